@@ -1,0 +1,5 @@
+//! Numerical building blocks.
+
+pub mod interpolate;
+pub mod regularize;
+pub mod sparse;

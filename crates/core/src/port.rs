@@ -1,0 +1,72 @@
+//! The sign convention, once for the whole program.
+//!
+//! - Every edge has two ports, `a` and `b`. Nothing is an inlet or an outlet: direction is a result.
+//! - `m_flow > 0` flows from a to b.
+//! - `dp = p_a - p_b`: positive for a passive element with positive flow, negative across a
+//!   running pump.
+//! - A heat flow is positive into the water of the component.
+//! - A station's flow is positive in feed-in (from the cold to the hot line), negative in extraction.
+
+use serde::{Deserialize, Serialize};
+
+/// One of the two ports of an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Port {
+    /// The port where positive flow enters.
+    A,
+    /// The port where positive flow leaves.
+    B,
+}
+
+impl Port {
+    /// The port through which the water enters an edge; port a at zero flow.
+    #[inline]
+    pub fn upstream(m_flow_kg_s: f64) -> Self {
+        if m_flow_kg_s < 0.0 { Self::B } else { Self::A }
+    }
+
+    /// The other port.
+    #[inline]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::A => Self::B,
+            Self::B => Self::A,
+        }
+    }
+}
+
+/// What a thermal unit wants of the stream through one of its ports.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PortRequest {
+    /// Wanted flow, kg/s; positive feeds in (leaves the unit warm), negative extracts. Behind an
+    /// exchanger its magnitude is the flow of the unit's own circulation.
+    pub m_flow_kg_s: f64,
+    /// What happens to the water on its way through the unit.
+    pub outlet: Outlet,
+}
+
+/// What happens to water that passes a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Outlet {
+    /// It leaves with this temperature, K, at whichever end.
+    Temperature(f64),
+    /// It takes up this heat flow, W (negative: gives it off).
+    HeatFlow(f64),
+}
+
+impl Default for PortRequest {
+    fn default() -> Self {
+        Self { m_flow_kg_s: 0.0, outlet: Outlet::HeatFlow(0.0) }
+    }
+}
+
+/// What a unit got through one of its ports during a step; means over the step.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PortFlow {
+    /// Flow through the unit, kg/s, with the sign of [`PortRequest::m_flow_kg_s`].
+    pub m_flow_kg_s: f64,
+    /// Temperature of the water arriving at the unit, K.
+    pub t_in_k: f64,
+    /// Temperature of the water leaving the unit, K.
+    pub t_out_k: f64,
+}

@@ -1,0 +1,357 @@
+//! A two-way control valve: linear or equal-percentage, tight or leaking, with stroke time.
+//!
+//! **Equation** `m = k_vs phi(y) sqrt(dp)`; leakage `l = k(0)/k(1)`.
+//! Linear `phi = l + (1 - l) y`. Equal percentage (rangeability R, foot `delta = 0.01`):
+//! `y < delta/2`: `phi = l + y (R^(delta-1) - l)/delta`; `y > 3 delta/2`: `phi = R^(y-1)`; between a
+//! cubic with value and slope of both ends. With `command = "kappa"` the command is the wanted phi.
+//!
+//! **Assumptions** fully turbulent. **Numerics** the square law is regularised below `delta_m` times
+//! the nominal flow; a closed tight valve is a prescribed flow of zero.
+//!
+//! **Sources** `wetter2014`, `elizarov2021` (Kvs 2.5 m3/h, leakage 2e-3, 35 s).
+
+use super::flow_coefficient;
+use crate::two_port::{
+    Actuator, Characteristic, EdgeState, ElementError, TwoPort, not_negative, positive, ratio,
+};
+use anergy_core::medium::Medium;
+use anergy_core::numerics::interpolate::cubic_hermite;
+use anergy_core::numerics::regularize::quadratic;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Width of the linear foot of the equal-percentage characteristic.
+const FOOT: f64 = 0.01;
+/// A relative flow coefficient below this is a closed valve.
+const CLOSED: f64 = 1e-6;
+
+/// Flow coefficient over the stroke.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ValveCharacteristic {
+    /// Proportional to the opening.
+    Linear,
+    /// Equal steps multiply the coefficient equally.
+    #[default]
+    EqualPercentage,
+}
+
+/// What the command signal means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ValveCommand {
+    /// The stroke, 0 to 1.
+    #[default]
+    Opening,
+    /// The relative flow coefficient (linearised command).
+    Kappa,
+}
+
+/// A control valve as written in a model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ValveParams {
+    /// Flow in m3/h at 1 bar when fully open.
+    pub kvs_m3_h: f64,
+    /// Flow coefficient over the stroke.
+    #[serde(default)]
+    pub characteristic: ValveCharacteristic,
+    /// Ratio of largest to smallest controllable coefficient (equal percentage).
+    #[serde(default = "default_rangeability")]
+    pub rangeability: f64,
+    /// Coefficient of the closed valve over that of the open one; 0 is tight.
+    #[serde(default = "default_leakage")]
+    pub leakage: f64,
+    /// What the command means.
+    #[serde(default)]
+    pub command: ValveCommand,
+    /// Opening commanded while nothing drives it. Not with `command = "kappa"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opening: Option<f64>,
+    /// Relative flow coefficient commanded while nothing drives it, with `command = "kappa"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kappa: Option<f64>,
+    /// Opening at the start of a run. Absent: where the first command leads.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub initial_opening: Option<f64>,
+    /// Time in which the stem follows a step by 99.6 %, s.
+    #[serde(default = "default_stroke_time")]
+    pub stroke_time_s: f64,
+    /// Nominal flow for the regularisation, kg/s. Absent: flow at 0.1 bar when open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub m_flow_nominal_kg_s: Option<f64>,
+    /// Regularised below this share of the nominal flow.
+    #[serde(default = "default_delta_m")]
+    pub delta_m: f64,
+}
+
+fn default_rangeability() -> f64 {
+    50.0
+}
+
+fn default_leakage() -> f64 {
+    1e-3
+}
+
+fn default_stroke_time() -> f64 {
+    35.0
+}
+
+fn default_delta_m() -> f64 {
+    0.02
+}
+
+impl Default for ValveParams {
+    fn default() -> Self {
+        Self {
+            kvs_m3_h: 2.5,
+            characteristic: ValveCharacteristic::default(),
+            rangeability: default_rangeability(),
+            leakage: default_leakage(),
+            command: ValveCommand::default(),
+            opening: None,
+            kappa: None,
+            initial_opening: None,
+            stroke_time_s: default_stroke_time(),
+            m_flow_nominal_kg_s: None,
+            delta_m: default_delta_m(),
+        }
+    }
+}
+
+/// A control valve ready to be solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Valve {
+    k_open: f64,
+    curve: Curve,
+    command: ValveCommand,
+    actuator: Actuator,
+    m_flow_nominal_kg_s: f64,
+    m_turbulent_kg_s: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Curve {
+    characteristic: ValveCharacteristic,
+    rangeability: f64,
+    leakage: f64,
+}
+
+impl Curve {
+    /// Relative flow coefficient at an opening.
+    fn phi(&self, y: f64) -> f64 {
+        let (l, r) = (self.leakage, self.rangeability);
+        match self.characteristic {
+            ValveCharacteristic::Linear => l + (1.0 - l) * y,
+            ValveCharacteristic::EqualPercentage => {
+                let foot_slope = (r.powf(FOOT - 1.0) - l) / FOOT;
+                if y <= 0.5 * FOOT {
+                    l + y * foot_slope
+                } else if y >= 1.5 * FOOT {
+                    r.powf(y - 1.0)
+                } else {
+                    let end = r.powf(1.5 * FOOT - 1.0);
+                    cubic_hermite(
+                        y,
+                        (0.5 * FOOT, l + 0.5 * FOOT * foot_slope, foot_slope),
+                        (1.5 * FOOT, end, end * r.ln()),
+                    )
+                    .value
+                }
+            }
+        }
+    }
+
+    /// Opening with a relative flow coefficient.
+    fn opening(&self, phi: f64) -> f64 {
+        let (l, r) = (self.leakage, self.rangeability);
+        if phi <= l {
+            return 0.0;
+        }
+        match self.characteristic {
+            ValveCharacteristic::Linear => ((phi - l) / (1.0 - l)).min(1.0),
+            ValveCharacteristic::EqualPercentage => {
+                let y = 1.0 + phi.ln() / r.ln();
+                if y >= 1.5 * FOOT {
+                    return y.min(1.0);
+                }
+                let (mut low, mut high) = (0.0, 1.5 * FOOT);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if self.phi(middle) < phi { low = middle } else { high = middle }
+                }
+                0.5 * (low + high)
+            }
+        }
+    }
+}
+
+impl ValveParams {
+    /// The runtime valve.
+    ///
+    /// # Errors
+    /// Names the field that is out of range.
+    pub fn build(&self, medium: &Medium) -> Result<Valve, ElementError> {
+        let k_open = flow_coefficient(positive("kvs_m3_h", self.kvs_m3_h)?, medium.density_kg_m3);
+        if self.rangeability < 2.0 || !self.rangeability.is_finite() {
+            return Err(ElementError::OutOfRange {
+                field: "rangeability",
+                value: self.rangeability,
+                requirement: "must be at least 2",
+            });
+        }
+        let largest_leakage = match self.characteristic {
+            ValveCharacteristic::Linear => 1.0,
+            ValveCharacteristic::EqualPercentage => self.rangeability.powf(FOOT - 1.0),
+        };
+        if !(0.0..largest_leakage).contains(&self.leakage) {
+            return Err(ElementError::OutOfRange {
+                field: "leakage",
+                value: self.leakage,
+                requirement: "must not be negative and below the foot of the characteristic",
+            });
+        }
+        let curve = Curve {
+            characteristic: self.characteristic,
+            rangeability: self.rangeability,
+            leakage: self.leakage,
+        };
+        let (command_name, given, other, other_given) = match self.command {
+            ValveCommand::Opening => ("opening", self.opening, "kappa", self.kappa),
+            ValveCommand::Kappa => ("kappa", self.kappa, "opening", self.opening),
+        };
+        if other_given.is_some() {
+            return Err(ElementError::Fields {
+                problem: format!(
+                    "{other} is given, but the command of this valve is {command_name}"
+                ),
+            });
+        }
+        let initial_command = ratio(command_name, given.unwrap_or(1.0))?;
+        let target = match self.command {
+            ValveCommand::Opening => initial_command,
+            ValveCommand::Kappa => curve.opening(initial_command),
+        };
+        let m_flow_nominal_kg_s = match self.m_flow_nominal_kg_s {
+            Some(m) => positive("m_flow_nominal_kg_s", m)?,
+            None => k_open * 1e4_f64.sqrt(),
+        };
+        Ok(Valve {
+            k_open,
+            curve,
+            command: self.command,
+            actuator: Actuator {
+                position: "opening",
+                command: command_name,
+                unit: "",
+                initial_command,
+                initial_position: ratio("initial_opening", self.initial_opening.unwrap_or(target))?,
+                rise_time_s: not_negative("stroke_time_s", self.stroke_time_s)?,
+                min: 0.0,
+                max: 1.0,
+            },
+            m_flow_nominal_kg_s,
+            m_turbulent_kg_s: positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s,
+        })
+    }
+}
+
+impl TwoPort for Valve {
+    fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
+        let phi = self.curve.phi(state.position);
+        if phi < CLOSED {
+            return Characteristic::ImposedFlow { m_flow_kg_s: 0.0 };
+        }
+        let k = self.k_open * phi;
+        Characteristic::PressureLoss(quadratic(m, 1.0 / (k * k), self.m_turbulent_kg_s))
+    }
+
+    fn m_flow_nominal_kg_s(&self) -> f64 {
+        self.m_flow_nominal_kg_s
+    }
+
+    fn actuator(&self) -> Option<Actuator> {
+        Some(self.actuator)
+    }
+
+    fn target_position(&self, command: f64) -> f64 {
+        let command = command.clamp(0.0, 1.0);
+        match self.command {
+            ValveCommand::Opening => command,
+            ValveCommand::Kappa => self.curve.opening(command),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(opening: f64) -> EdgeState {
+        EdgeState { position: opening, density_kg_m3: 1000.0, viscosity_pa_s: 1e-3 }
+    }
+
+    fn loss(valve: &Valve, m: f64, opening: f64) -> f64 {
+        match valve.characteristic(m, &state(opening)) {
+            Characteristic::PressureLoss(loss) => loss.value,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn kv_check() {
+        // Kvs 2.5: 2.5 m3/h = 0.69444 kg/s at 1 bar; leak l = 2e-3: that flow times 2e-3
+        let valve = ValveParams { leakage: 2e-3, ..ValveParams::default() };
+        let valve = valve.build(&Medium::default()).unwrap();
+        assert!((loss(&valve, 2.5 / 3.6, 1.0) - 1e5).abs() < 1e-6);
+        let leak = Valve { m_turbulent_kg_s: 1e-9, ..valve };
+        assert!((loss(&leak, 2e-3 * 2.5 / 3.6, 0.0) - 1e5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn published_inverse_table() {
+        // kappa : opening for R = 50 (elizarov2021)
+        let curve = Curve {
+            characteristic: ValveCharacteristic::EqualPercentage,
+            rangeability: 50.0,
+            leakage: 2e-3,
+        };
+        let table = [
+            (0.029575152, 0.1),
+            (0.043734483, 0.2),
+            (0.0646727, 0.3),
+            (0.09563525, 0.4),
+            (0.14142136, 0.5),
+            (0.20912792, 0.6),
+            (0.3092495, 0.7),
+            (0.45730504, 0.8),
+            (0.67624336, 0.9),
+            (1.0, 1.0),
+        ];
+        for (kappa, opening) in table {
+            assert!((curve.opening(kappa) - opening).abs() < 1e-6, "{kappa}");
+        }
+        for phi in [0.0025, 0.01, 0.0205, 0.021, 0.5] {
+            assert!((curve.phi(curve.opening(phi)) - phi).abs() < 1e-12, "{phi}");
+        }
+    }
+
+    #[test]
+    fn characteristic_rises_and_a_tight_valve_closes() {
+        for characteristic in [ValveCharacteristic::Linear, ValveCharacteristic::EqualPercentage] {
+            let params = ValveParams { characteristic, leakage: 0.0, ..ValveParams::default() };
+            let valve = params.build(&Medium::default()).unwrap();
+            let mut last = -1.0;
+            for i in 0..=1000 {
+                let phi = valve.curve.phi(f64::from(i) / 1000.0);
+                assert!(phi > last);
+                last = phi;
+            }
+            assert!((last - 1.0).abs() < 1e-12);
+            assert_eq!(
+                valve.characteristic(0.1, &state(0.0)),
+                Characteristic::ImposedFlow { m_flow_kg_s: 0.0 }
+            );
+        }
+    }
+}

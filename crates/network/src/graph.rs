@@ -1,0 +1,214 @@
+//! The network as a directed multigraph, and what can be wrong with it.
+//!
+//! A *circuit* is a connected component at water level; heat exchangers connect circuits thermally
+//! only. Each circuit needs exactly one pressure reference (pressure holding, exchanges no water) or
+//! at least one pressure boundary (open ends, reservoirs), not both.
+
+use crate::elements::Element;
+use crate::two_port::{Characteristic, EdgeState};
+use anergy_core::ids::{EdgeId, NodeId};
+use anergy_core::medium::Medium;
+
+/// Standard gravity of the specification, m/s2.
+pub const GRAVITY_M_S2: f64 = 9.81;
+
+/// What is known at a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NodeKind {
+    /// Nothing: pressure and temperature are results.
+    Junction,
+    /// The pressure is held, no water is exchanged.
+    PressureReference,
+    /// The pressure is given, water enters (with a given temperature) or leaves.
+    PressureBoundary,
+    /// A flow enters (positive, with a given temperature) or leaves the network.
+    Source,
+}
+
+/// A node: one pressure, one temperature.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// What is known.
+    pub kind: NodeKind,
+    /// Elevation, m.
+    pub elevation_m: f64,
+    /// Mixed water volume, m3; 0 mixes at once.
+    pub volume_m3: f64,
+}
+
+/// An edge: one mass flow, positive from `from` (port a) to `to` (port b).
+#[derive(Debug, Clone)]
+pub struct Edge {
+    /// Node at port a.
+    pub from: NodeId,
+    /// Node at port b.
+    pub to: NodeId,
+    /// The component.
+    pub element: Element,
+    /// Multiplies the pressure loss of the component: 1 leaves its law alone.
+    pub loss_factor: f64,
+    /// The other heat-exchanger side, in another circuit.
+    pub partner: Option<EdgeId>,
+    /// Whether the pair's UA is this edge's (and not its partner's).
+    pub leads_partner: bool,
+}
+
+impl Edge {
+    /// What the edge imposes between its ports.
+    #[inline]
+    pub fn characteristic(&self, m_flow_kg_s: f64, state: &EdgeState) -> Characteristic {
+        match self.element.characteristic(m_flow_kg_s, state) {
+            Characteristic::PressureLoss(loss) if self.loss_factor != 1.0 => {
+                Characteristic::PressureLoss(loss.scaled(self.loss_factor))
+            }
+            other => other,
+        }
+    }
+
+    /// The node at the end the water leaves through.
+    #[inline]
+    pub fn downstream(&self, m_flow_kg_s: f64) -> NodeId {
+        if m_flow_kg_s < 0.0 { self.from } else { self.to }
+    }
+
+    /// The node at the end the water enters through.
+    #[inline]
+    pub fn upstream(&self, m_flow_kg_s: f64) -> NodeId {
+        if m_flow_kg_s < 0.0 { self.to } else { self.from }
+    }
+}
+
+/// The network: everything that does not change during a run.
+#[derive(Debug, Clone)]
+pub struct Network {
+    /// The water.
+    pub medium: Medium,
+    /// Gravity, m/s2.
+    pub gravity_m_s2: f64,
+    /// Nodes.
+    pub nodes: Vec<Node>,
+    /// Edges.
+    pub edges: Vec<Edge>,
+    /// Edges with a thermal unit on them; the index is the port of the unit.
+    pub ports: Vec<EdgeId>,
+}
+
+/// Something that makes a network unsolvable; ids, so that the caller can name them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum GraphProblem {
+    /// A circuit whose pressure level nothing fixes.
+    NoPressureReference {
+        /// All nodes of the circuit.
+        circuit: Vec<NodeId>,
+    },
+    /// A circuit with more than one pressure reference.
+    SeveralReferences {
+        /// The references.
+        references: Vec<NodeId>,
+    },
+    /// A circuit with a reference, which exchanges no water, and a boundary, which does.
+    ReferenceAndBoundary {
+        /// One of the references.
+        reference: NodeId,
+        /// One of the boundaries.
+        boundary: NodeId,
+    },
+    /// A loop of ideal head sources alone, or two fixed pressures joined by them.
+    IdealLoop {
+        /// The edge that closes the loop.
+        edge: EdgeId,
+    },
+}
+
+/// Disjoint sets with path halving.
+#[derive(Debug, Clone)]
+pub(crate) struct UnionFind(Vec<u32>);
+
+impl UnionFind {
+    pub(crate) fn new(n: usize) -> Self {
+        Self((0..n as u32).collect())
+    }
+
+    pub(crate) fn reset(&mut self) {
+        for (i, parent) in self.0.iter_mut().enumerate() {
+            *parent = i as u32;
+        }
+    }
+
+    pub(crate) fn find(&mut self, i: usize) -> usize {
+        let mut i = i as u32;
+        while self.0[i as usize] != i {
+            let grandparent = self.0[self.0[i as usize] as usize];
+            self.0[i as usize] = grandparent;
+            i = grandparent;
+        }
+        i as usize
+    }
+
+    /// Joins two sets; false when they were one already.
+    pub(crate) fn union(&mut self, i: usize, j: usize) -> bool {
+        let (i, j) = (self.find(i), self.find(j));
+        // The smaller root wins, so that the result does not depend on the order of joining.
+        let (low, high) = (i.min(j), i.max(j));
+        self.0[high] = low as u32;
+        low != high
+    }
+}
+
+impl Network {
+    /// Whether the edge is an ideal head source.
+    pub fn is_ideal(&self, edge: &Edge) -> bool {
+        matches!(edge.element, Element::PressureSource(_))
+    }
+
+    /// The circuits as lists of nodes, in the order of their first node.
+    pub fn circuits(&self) -> Vec<Vec<NodeId>> {
+        let mut sets = UnionFind::new(self.nodes.len());
+        for edge in &self.edges {
+            sets.union(edge.from.index(), edge.to.index());
+        }
+        let mut circuits: Vec<Vec<NodeId>> = vec![Vec::new(); self.nodes.len()];
+        for i in 0..self.nodes.len() {
+            circuits[sets.find(i)].push(NodeId::from_index(i));
+        }
+        circuits.retain(|circuit| !circuit.is_empty());
+        circuits
+    }
+
+    /// All structural problems of the network.
+    pub fn problems(&self) -> Vec<GraphProblem> {
+        let mut problems = Vec::new();
+        for circuit in self.circuits() {
+            let of_kind = |kind: NodeKind| -> Vec<NodeId> {
+                circuit.iter().copied().filter(|id| self.nodes[id.index()].kind == kind).collect()
+            };
+            let references = of_kind(NodeKind::PressureReference);
+            let boundaries = of_kind(NodeKind::PressureBoundary);
+            match (references.as_slice(), boundaries.as_slice()) {
+                ([], []) => problems.push(GraphProblem::NoPressureReference { circuit }),
+                ([reference, ..], [boundary, ..]) => {
+                    problems.push(GraphProblem::ReferenceAndBoundary {
+                        reference: *reference,
+                        boundary: *boundary,
+                    });
+                }
+                ([_, _, ..], []) => problems.push(GraphProblem::SeveralReferences { references }),
+                _ => {}
+            }
+        }
+        // Ideal head sources must form a forest with at most one fixed pressure per tree.
+        let mut merged = UnionFind::new(self.nodes.len() + 1);
+        let ground = self.nodes.len();
+        for (i, node) in self.nodes.iter().enumerate() {
+            if matches!(node.kind, NodeKind::PressureReference | NodeKind::PressureBoundary) {
+                merged.union(i, ground);
+            }
+        }
+        for (i, edge) in self.edges.iter().enumerate() {
+            if self.is_ideal(edge) && !merged.union(edge.from.index(), edge.to.index()) {
+                problems.push(GraphProblem::IdealLoop { edge: EdgeId::from_index(i) });
+            }
+        }
+        problems
+    }
+}

@@ -1,0 +1,417 @@
+//! The nodal system: which node is which unknown, the matrix, the right-hand side, the residuals.
+
+use crate::graph::{Network, NodeKind, UnionFind};
+use crate::hydraulics::HydraulicError;
+use crate::state::NetworkState;
+use anergy_core::ids::NodeId;
+use anergy_core::numerics::sparse::SparseCholesky;
+
+/// No unknown or no slot.
+const NONE: u32 = u32::MAX;
+
+/// Where an edge enters the matrix.
+#[derive(Debug, Clone, Copy)]
+struct EdgeSlots {
+    unknown_a: u32,
+    unknown_b: u32,
+    diagonal_a: u32,
+    diagonal_b: u32,
+    off_diagonal: u32,
+}
+
+/// An ideal head source in the tree that merges nodes, leaves last.
+#[derive(Debug, Clone, Copy)]
+struct IdealLink {
+    edge: u32,
+    parent: u32,
+    child: u32,
+}
+
+/// Largest residuals and where.
+pub(super) struct Residuals {
+    pub edge_pa: (f64, usize),
+    pub node_kg_s: (f64, usize),
+    pub largest_p_pa: f64,
+}
+
+pub(super) struct NodalSystem {
+    cholesky: SparseCholesky,
+    slots: Vec<EdgeSlots>,
+    /// Unknown of each node; NONE where the pressure is fixed.
+    unknown_of_node: Vec<u32>,
+    diagonal: Vec<u32>,
+    gravity_pa: Vec<f64>,
+    ideal: Vec<bool>,
+    ideal_links: Vec<IdealLink>,
+    increment: Vec<f64>,
+    net_inflow: Vec<f64>,
+    /// Islands behind imposed flows: found again when the imposed edges change.
+    imposed_before: Vec<bool>,
+    islands: UnionFind,
+    island_fixed: Vec<bool>,
+    floating: Vec<u32>,
+    first: bool,
+}
+
+impl NodalSystem {
+    pub(super) fn new(network: &Network) -> Result<Self, HydraulicError> {
+        let (n, edges) = (network.nodes.len(), network.edges.len());
+        let mut merged = UnionFind::new(n);
+        for edge in network.edges.iter().filter(|edge| network.is_ideal(edge)) {
+            merged.union(edge.from.index(), edge.to.index());
+        }
+        let mut fixed = vec![false; n];
+        for (i, node) in network.nodes.iter().enumerate() {
+            fixed[merged.find(i)] |= node.has_fixed_pressure();
+        }
+        let mut unknown_of_root = vec![NONE; n];
+        let mut count = 0_u32;
+        for i in 0..n {
+            let root = merged.find(i);
+            if !fixed[root] && unknown_of_root[root] == NONE {
+                unknown_of_root[root] = count;
+                count += 1;
+            }
+        }
+        let unknown_of_node: Vec<u32> = (0..n).map(|i| unknown_of_root[merged.find(i)]).collect();
+        let ends = |i: usize| {
+            let edge = &network.edges[i];
+            (unknown_of_node[edge.from.index()], unknown_of_node[edge.to.index()])
+        };
+        let pairs: Vec<(usize, usize)> = (0..edges)
+            .map(ends)
+            .filter(|&(a, b)| a != NONE && b != NONE && a != b)
+            .map(|(a, b)| (a as usize, b as usize))
+            .collect();
+        let cholesky = SparseCholesky::analyze(count as usize, &pairs)?;
+        let slot = |a: u32, b: u32| {
+            if a == NONE || b == NONE {
+                return NONE;
+            }
+            cholesky.slot(a as usize, b as usize).map_or(NONE, |slot| slot as u32)
+        };
+        let slots = (0..edges)
+            .map(ends)
+            .map(|(a, b)| EdgeSlots {
+                unknown_a: a,
+                unknown_b: b,
+                diagonal_a: slot(a, a),
+                diagonal_b: slot(b, b),
+                off_diagonal: if a == b { NONE } else { slot(a, b) },
+            })
+            .collect();
+        let diagonal = (0..count).map(|i| slot(i, i)).collect();
+        let density = network.medium.density_kg_m3;
+        let gravity_pa = network
+            .edges
+            .iter()
+            .map(|edge| {
+                let z = |id: NodeId| network.nodes[id.index()].elevation_m;
+                density * network.gravity_m_s2 * (z(edge.to) - z(edge.from))
+            })
+            .collect();
+        Ok(Self {
+            cholesky,
+            slots,
+            unknown_of_node,
+            diagonal,
+            gravity_pa,
+            ideal: network.edges.iter().map(|edge| network.is_ideal(edge)).collect(),
+            ideal_links: ideal_forest(network),
+            increment: vec![0.0; count as usize],
+            net_inflow: vec![0.0; n],
+            imposed_before: vec![false; edges],
+            islands: UnionFind::new(n),
+            island_fixed: vec![false; n],
+            floating: Vec::with_capacity(n),
+            first: true,
+        })
+    }
+
+    /// Hydrostatic part of the pressure difference of an edge, Pa.
+    #[inline]
+    pub(super) fn gravity_pa(&self, edge: usize) -> f64 {
+        self.gravity_pa[edge]
+    }
+
+    /// Puts given pressures and ideal heads into the state and finds floating islands.
+    pub(super) fn begin(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+        imposed: &[bool],
+    ) -> Result<(), HydraulicError> {
+        for (i, node) in network.nodes.iter().enumerate() {
+            if node.has_fixed_pressure() {
+                state.p_pa[i] = state.given_p_pa[i];
+            }
+        }
+        // Links are ordered from the root (a fixed node where there is one) to the leaves.
+        for link in &self.ideal_links {
+            let edge = &network.edges[link.edge as usize];
+            // p_a - p_b = -head + rho g (z_b - z_a)
+            let drop = self.gravity_pa[link.edge as usize] - state.position[link.edge as usize];
+            let (parent, child) = (link.parent as usize, link.child as usize);
+            state.p_pa[child] = if edge.from.index() == parent {
+                state.p_pa[parent] - drop
+            } else {
+                state.p_pa[parent] + drop
+            };
+        }
+        if self.first || self.imposed_before != imposed {
+            self.first = false;
+            self.imposed_before.copy_from_slice(imposed);
+            self.find_islands(network, imposed);
+        }
+        self.check_islands(network, state, imposed)
+    }
+
+    fn find_islands(&mut self, network: &Network, imposed: &[bool]) {
+        self.islands.reset();
+        for (edge, _) in network.edges.iter().zip(imposed).filter(|(_, imposed)| !**imposed) {
+            self.islands.union(edge.from.index(), edge.to.index());
+        }
+        self.island_fixed.fill(false);
+        for (i, node) in network.nodes.iter().enumerate() {
+            let root = self.islands.find(i);
+            self.island_fixed[root] |= node.has_fixed_pressure();
+        }
+        self.floating.clear();
+        for i in 0..network.nodes.len() {
+            if self.islands.find(i) == i && !self.island_fixed[i] {
+                self.floating.push(i as u32);
+            }
+        }
+    }
+
+    /// What is imposed on an island must sum to zero.
+    fn check_islands(
+        &mut self,
+        network: &Network,
+        state: &NetworkState,
+        imposed: &[bool],
+    ) -> Result<(), HydraulicError> {
+        if self.floating.is_empty() {
+            return Ok(());
+        }
+        self.net_inflow.fill(0.0);
+        for (i, edge) in network.edges.iter().enumerate().filter(|(i, _)| imposed[*i]) {
+            let m = match edge.characteristic(0.0, &state.edge_state(network, i)) {
+                crate::two_port::Characteristic::ImposedFlow { m_flow_kg_s } => m_flow_kg_s,
+                _ => 0.0,
+            };
+            let (a, b) = (self.islands.find(edge.from.index()), self.islands.find(edge.to.index()));
+            self.net_inflow[a] -= m;
+            self.net_inflow[b] += m;
+        }
+        for (i, node) in network.nodes.iter().enumerate() {
+            if node.kind == NodeKind::Source {
+                let root = self.islands.find(i);
+                self.net_inflow[root] += state.given_m_flow_kg_s[i];
+            }
+        }
+        for &root in &self.floating {
+            let surplus = self.net_inflow[root as usize];
+            if surplus.abs() > super::MASS_RESIDUAL_KG_S {
+                return Err(HydraulicError::Unbalanced {
+                    node: NodeId(root),
+                    m_flow_kg_s: surplus,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Assembles and solves one Newton step: pressures are moved, `step` receives the flows' change.
+    pub(super) fn newton_step(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+        loss: &[f64],
+        slope: &[f64],
+        imposed: &[bool],
+        step: &mut [f64],
+    ) -> Result<(), HydraulicError> {
+        self.increment.fill(0.0);
+        self.cholesky.values_mut().fill(0.0);
+        for (node, &unknown) in
+            network.nodes.iter().zip(&self.unknown_of_node).enumerate().filter_map(
+                |(i, (node, unknown))| {
+                    (node.kind == NodeKind::Source && *unknown != NONE).then_some((i, unknown))
+                },
+            )
+        {
+            self.increment[unknown as usize] += state.given_m_flow_kg_s[node];
+        }
+        let mut largest_conductance = 0.0_f64;
+        for (i, edge) in network.edges.iter().enumerate() {
+            if self.ideal[i] {
+                step[i] = 0.0;
+                continue;
+            }
+            let slots = self.slots[i];
+            let m = state.m_flow_kg_s[i];
+            if imposed[i] {
+                step[i] = loss[i] - m;
+            } else {
+                let conductance = 1.0 / slope[i];
+                largest_conductance = largest_conductance.max(conductance);
+                let dp = state.p_pa[edge.from.index()] - state.p_pa[edge.to.index()];
+                step[i] = conductance * (dp - self.gravity_pa[i] - loss[i]);
+                let values = self.cholesky.values_mut();
+                if slots.unknown_a != slots.unknown_b {
+                    if slots.diagonal_a != NONE {
+                        values[slots.diagonal_a as usize] += conductance;
+                    }
+                    if slots.diagonal_b != NONE {
+                        values[slots.diagonal_b as usize] += conductance;
+                    }
+                    if slots.off_diagonal != NONE {
+                        values[slots.off_diagonal as usize] -= conductance;
+                    }
+                }
+            }
+            let flow = m + step[i];
+            if slots.unknown_a != NONE {
+                self.increment[slots.unknown_a as usize] -= flow;
+            }
+            if slots.unknown_b != NONE {
+                self.increment[slots.unknown_b as usize] += flow;
+            }
+        }
+        // An island without fixed pressure keeps its level: no flow passes this conductance.
+        for &root in &self.floating {
+            let unknown = self.unknown_of_node[root as usize];
+            let slot = self.diagonal[unknown as usize];
+            self.cholesky.values_mut()[slot as usize] += largest_conductance.max(1e-12);
+        }
+        self.cholesky.factor()?;
+        self.cholesky.solve_in_place(&mut self.increment);
+        for (p, &unknown) in state.p_pa.iter_mut().zip(&self.unknown_of_node) {
+            if unknown != NONE {
+                *p += self.increment[unknown as usize];
+            }
+        }
+        for (i, slots) in self.slots.iter().enumerate() {
+            if imposed[i] || self.ideal[i] {
+                continue;
+            }
+            let at = |unknown: u32| {
+                if unknown == NONE { 0.0 } else { self.increment[unknown as usize] }
+            };
+            step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / slope[i];
+        }
+        Ok(())
+    }
+
+    /// Largest misses of the edge laws and of the mass balances.
+    pub(super) fn residuals(
+        &mut self,
+        network: &Network,
+        state: &NetworkState,
+        loss: &[f64],
+        imposed: &[bool],
+    ) -> Residuals {
+        let mut worst = Residuals { edge_pa: (0.0, 0), node_kg_s: (0.0, 0), largest_p_pa: 0.0 };
+        self.increment.fill(0.0);
+        for (i, edge) in network.edges.iter().enumerate() {
+            if self.ideal[i] {
+                continue;
+            }
+            let m = state.m_flow_kg_s[i];
+            if !imposed[i] {
+                let dp = state.p_pa[edge.from.index()] - state.p_pa[edge.to.index()];
+                let miss = (dp - self.gravity_pa[i] - loss[i]).abs();
+                if miss > worst.edge_pa.0 || miss.is_nan() {
+                    worst.edge_pa = (miss, i);
+                }
+            }
+            let slots = self.slots[i];
+            if slots.unknown_a != NONE {
+                self.increment[slots.unknown_a as usize] -= m;
+            }
+            if slots.unknown_b != NONE {
+                self.increment[slots.unknown_b as usize] += m;
+            }
+        }
+        for (i, node) in network.nodes.iter().enumerate() {
+            worst.largest_p_pa = worst.largest_p_pa.max(state.p_pa[i].abs());
+            let unknown = self.unknown_of_node[i];
+            if unknown != NONE && node.kind == NodeKind::Source {
+                self.increment[unknown as usize] += state.given_m_flow_kg_s[i];
+            }
+        }
+        for (i, &unknown) in self.unknown_of_node.iter().enumerate() {
+            if unknown != NONE {
+                let miss = self.increment[unknown as usize].abs();
+                if miss > worst.node_kg_s.0 || miss.is_nan() {
+                    worst.node_kg_s = (miss, i);
+                }
+            }
+        }
+        worst
+    }
+
+    /// After convergence: flows of the ideal head sources and what fixed nodes exchange.
+    pub(super) fn close(&mut self, network: &Network, state: &mut NetworkState) {
+        self.net_inflow.fill(0.0);
+        for (i, edge) in network.edges.iter().enumerate() {
+            if !self.ideal[i] {
+                self.net_inflow[edge.from.index()] -= state.m_flow_kg_s[i];
+                self.net_inflow[edge.to.index()] += state.m_flow_kg_s[i];
+            }
+        }
+        for (i, node) in network.nodes.iter().enumerate() {
+            if node.kind == NodeKind::Source {
+                self.net_inflow[i] += state.given_m_flow_kg_s[i];
+                state.exchange_kg_s[i] = state.given_m_flow_kg_s[i];
+            }
+        }
+        // From the leaves to the root: what a leaf has too much goes to its parent.
+        for link in self.ideal_links.iter().rev() {
+            let surplus = self.net_inflow[link.child as usize];
+            self.net_inflow[link.child as usize] = 0.0;
+            self.net_inflow[link.parent as usize] += surplus;
+            let edge = link.edge as usize;
+            let towards_parent = network.edges[edge].to.0 == link.parent;
+            state.m_flow_kg_s[edge] = if towards_parent { surplus } else { -surplus };
+        }
+        for (i, node) in network.nodes.iter().enumerate() {
+            if node.has_fixed_pressure() {
+                state.exchange_kg_s[i] = -self.net_inflow[i];
+            }
+        }
+    }
+}
+
+/// Ideal head sources as trees, root (a fixed node where there is one) first.
+fn ideal_forest(network: &Network) -> Vec<IdealLink> {
+    let n = network.nodes.len();
+    let mut incident: Vec<Vec<u32>> = vec![Vec::new(); n];
+    for (i, edge) in network.edges.iter().enumerate().filter(|(_, edge)| network.is_ideal(edge)) {
+        incident[edge.from.index()].push(i as u32);
+        incident[edge.to.index()].push(i as u32);
+    }
+    let mut seen = vec![false; n];
+    let mut links = Vec::new();
+    let fixed_first = (0..n)
+        .filter(|&i| network.nodes[i].has_fixed_pressure())
+        .chain((0..n).filter(|&i| !network.nodes[i].has_fixed_pressure()));
+    for root in fixed_first {
+        if std::mem::replace(&mut seen[root], true) {
+            continue;
+        }
+        let mut stack = vec![root];
+        while let Some(parent) = stack.pop() {
+            for &edge in &incident[parent] {
+                let ends = &network.edges[edge as usize];
+                let child = if ends.from.index() == parent { ends.to } else { ends.from };
+                if !std::mem::replace(&mut seen[child.index()], true) {
+                    links.push(IdealLink { edge, parent: parent as u32, child: child.0 });
+                    stack.push(child.index());
+                }
+            }
+        }
+    }
+    links
+}

@@ -1,0 +1,87 @@
+//! Hydraulic interfaces: where a thermal-only prosumer meets the network.
+//!
+//! A [`Station`] watches one flow (positive in feed-in) and the pump that is to deliver it, and raises
+//! the flag `blocked` when the network does not let it.
+//!
+//! **Equation** the flag is set when the pump has been on, at its upper limit or at its commanded fixed
+//! speed, for more than 60 s with `V_act < 0.5 V_set`; cleared when `V_act > 0.6 V_set` or the pump is
+//! off. **Sources** specification 11 (`angelidis2023`).
+
+use crate::graph::Network;
+use crate::state::NetworkState;
+use anergy_core::ids::EdgeId;
+use serde::{Deserialize, Serialize};
+
+/// A flow below this share of the wanted one counts as held back.
+pub const BLOCKED_BELOW: f64 = 0.5;
+/// A flow above this share clears the flag.
+pub const CLEARED_ABOVE: f64 = 0.6;
+/// A pump must have been held back this long, s.
+pub const BLOCKED_AFTER_S: f64 = 60.0;
+/// A speed this close to its limit or command has arrived there.
+const ARRIVED: f64 = 1e-3;
+
+/// A hydraulic interface in the network.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Station {
+    /// The edge whose flow from a to b is the station's feed-in.
+    pub edge: EdgeId,
+    /// The pump that feeds in.
+    pub pump: Option<EdgeId>,
+    /// Flow the pump means to deliver, kg/s; decides the flag.
+    pub requested_m_flow_kg_s: Option<f64>,
+}
+
+/// What a station remembers.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct StationState {
+    /// Whether the network holds the pump back.
+    pub blocked: bool,
+    /// How long the pump has been held back, s.
+    pub held_back_s: f64,
+    /// How long the flag has been set in this run, s.
+    pub blocked_s: f64,
+}
+
+impl Station {
+    /// Flow of the station, kg/s; positive in feed-in.
+    #[inline]
+    pub fn m_flow_kg_s(&self, state: &NetworkState) -> f64 {
+        state.m_flow_kg_s[self.edge.index()]
+    }
+
+    /// Updates the flag after a step; `command` is the command of the pump. Returns the new flag
+    /// when it changed.
+    pub fn watch(
+        &self,
+        network: &Network,
+        state: &NetworkState,
+        command: f64,
+        dt_s: f64,
+        memory: &mut StationState,
+    ) -> Option<bool> {
+        let (Some(pump), Some(wanted)) = (self.pump, self.requested_m_flow_kg_s) else {
+            return None;
+        };
+        let element = &network.edges[pump.index()].element;
+        let speed = state.position[pump.index()];
+        let limit = element.actuator().map_or(1.0, |actuator| actuator.max);
+        let target = element.target_position(command);
+        let flow = self.m_flow_kg_s(state);
+        let was_blocked = memory.blocked;
+        if memory.blocked {
+            memory.blocked_s += dt_s;
+        }
+        if target <= 0.0 || flow > CLEARED_ABOVE * wanted {
+            (memory.blocked, memory.held_back_s) = (false, 0.0);
+        } else if flow < BLOCKED_BELOW * wanted
+            && ((speed - target).abs() < ARRIVED || speed > limit - ARRIVED)
+        {
+            memory.held_back_s += dt_s;
+            memory.blocked |= memory.held_back_s > BLOCKED_AFTER_S;
+        } else {
+            memory.held_back_s = 0.0;
+        }
+        (memory.blocked != was_blocked).then_some(memory.blocked)
+    }
+}

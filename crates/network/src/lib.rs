@@ -1,0 +1,15 @@
+//! Hydraulics and thermal transport of a network graph; knows no prosumer and no names.
+//!
+//! A network is a directed multigraph of [`graph::Node`]s (pressure, temperature) and
+//! [`graph::Edge`]s (mass flow). [`hydraulics`] solves pressures and flows, [`transport`] carries
+//! temperatures, [`interface`] couples thermal-only units to edges.
+
+pub mod effectiveness;
+pub mod elements;
+pub mod friction;
+pub mod graph;
+pub mod hydraulics;
+pub mod interface;
+pub mod state;
+pub mod transport;
+pub mod two_port;

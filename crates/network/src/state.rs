@@ -1,0 +1,243 @@
+//! Everything of a network that changes during a run: plain data, cloned by a snapshot.
+
+use crate::graph::{Network, NodeKind};
+use crate::transport::parcels::Parcels;
+use crate::two_port::{EdgeState, EdgeThermal};
+use anergy_core::port::{PortFlow, PortRequest};
+use serde::{Deserialize, Serialize};
+
+/// Pressures, flows, temperatures and actuator positions of a network.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NetworkState {
+    /// Mass flow of each edge, kg/s.
+    pub m_flow_kg_s: Vec<f64>,
+    /// Pressure of each node, Pa (gauge).
+    pub p_pa: Vec<f64>,
+    /// Actuator position of each edge.
+    pub position: Vec<f64>,
+    /// First lag of each actuator (the second is its position).
+    actuator_lag: Vec<f64>,
+    /// Given pressure of fixed nodes, Pa.
+    pub given_p_pa: Vec<f64>,
+    /// Given flow into source nodes, kg/s.
+    pub given_m_flow_kg_s: Vec<f64>,
+    /// Temperature of water entering at boundaries and sources, K.
+    pub given_t_k: Vec<f64>,
+    /// Temperature around each edge, K.
+    pub surroundings_k: Vec<f64>,
+    /// Temperature around nodes, K.
+    pub ambient_k: f64,
+    /// Flow that fixed nodes and sources bring into the network, kg/s.
+    pub exchange_kg_s: Vec<f64>,
+    /// Whether flows and pressures belong to the present positions and boundary values.
+    pub(crate) hydraulics_valid: bool,
+    /// Temperature of each node, K.
+    pub t_node_k: Vec<f64>,
+    /// Temperature of the mixed volume of each edge that has one (of the water passing, where not), K.
+    pub t_edge_k: Vec<f64>,
+    /// Heat taken up by the water of each edge from units or the other stream, W (mean of the step).
+    pub q_flow_w: Vec<f64>,
+    /// Heat lost by each edge to its surroundings, W (mean of the step).
+    pub q_loss_w: Vec<f64>,
+    /// Heat lost by all nodes, W (mean of the step).
+    pub q_loss_nodes_w: f64,
+    /// Enthalpy flow into the network through boundaries and sources, W (mean of the step).
+    pub boundary_w: f64,
+    /// Temperature of the secondary volume of each port behind an exchanger, K.
+    pub t_secondary_k: Vec<f64>,
+    /// What each port's unit wants.
+    pub requests: Vec<PortRequest>,
+    /// What each port's unit got in the last step.
+    pub port_flows: Vec<PortFlow>,
+    /// Content of the pipes.
+    pub parcels: Parcels,
+}
+
+impl NetworkState {
+    /// Everything at rest and at one temperature; pressures at zero.
+    pub fn new(network: &Network, initial_k: f64) -> Self {
+        let (nodes, edges, ports) = (network.nodes.len(), network.edges.len(), network.ports.len());
+        let initial_position = |edge: &crate::graph::Edge| {
+            edge.element.actuator().map_or(0.0, |actuator| actuator.initial_position)
+        };
+        let position: Vec<f64> = network.edges.iter().map(initial_position).collect();
+        Self {
+            m_flow_kg_s: network
+                .edges
+                .iter()
+                .map(|edge| 0.1 * edge.element.m_flow_nominal_kg_s())
+                .collect(),
+            p_pa: vec![0.0; nodes],
+            actuator_lag: position.clone(),
+            position,
+            given_p_pa: vec![0.0; nodes],
+            given_m_flow_kg_s: vec![0.0; nodes],
+            given_t_k: vec![initial_k; nodes],
+            surroundings_k: vec![initial_k; edges],
+            ambient_k: initial_k,
+            exchange_kg_s: vec![0.0; nodes],
+            hydraulics_valid: false,
+            t_node_k: vec![initial_k; nodes],
+            t_edge_k: vec![initial_k; edges],
+            q_flow_w: vec![0.0; edges],
+            q_loss_w: vec![0.0; edges],
+            q_loss_nodes_w: 0.0,
+            boundary_w: 0.0,
+            t_secondary_k: vec![initial_k; ports],
+            requests: vec![PortRequest::default(); ports],
+            port_flows: vec![
+                PortFlow { m_flow_kg_s: 0.0, t_in_k: initial_k, t_out_k: initial_k };
+                ports
+            ],
+            parcels: Parcels::new(network, initial_k),
+        }
+    }
+
+    /// What an element is told about its edge.
+    #[inline]
+    pub fn edge_state(&self, network: &Network, edge: usize) -> EdgeState {
+        EdgeState {
+            position: self.position[edge],
+            density_kg_m3: network.medium.density_kg_m3,
+            viscosity_pa_s: network.medium.viscosity_pa_s,
+        }
+    }
+
+    /// Moves the actuator of an edge towards `command` over `dt_s`: two equal first-order lags with
+    /// `T = t_rise sqrt(sqrt 2 - 1)/5`, exact for a constant command. Infinite `dt_s` settles it.
+    pub fn advance_actuator(&mut self, network: &Network, edge: usize, command: f64, dt_s: f64) {
+        let element = &network.edges[edge].element;
+        let Some(actuator) = element.actuator() else {
+            return;
+        };
+        let target = element.target_position(command);
+        let (x1, x2) = (self.actuator_lag[edge], self.position[edge]);
+        if x1 == target && x2 == target {
+            return;
+        }
+        let lag_s = RISE_TO_LAG * actuator.rise_time_s;
+        let (mut new_1, mut new_2) = (target, target);
+        if lag_s > 0.0 && dt_s.is_finite() {
+            let x = dt_s / lag_s;
+            let decay = (-x).exp();
+            new_1 = target + (x1 - target) * decay;
+            new_2 = target + (x2 - target) * decay + (x1 - target) * x * decay;
+            if (new_1 - target).abs() < SETTLED && (new_2 - target).abs() < SETTLED {
+                (new_1, new_2) = (target, target);
+            }
+        }
+        self.actuator_lag[edge] = new_1;
+        if self.position[edge] != new_2 {
+            self.position[edge] = new_2;
+            self.hydraulics_valid = false;
+        }
+    }
+
+    /// Sets the given pressure, flow and temperature of a node.
+    pub fn set_boundary(&mut self, node: usize, p_pa: f64, m_flow_kg_s: f64, t_k: f64) {
+        if self.given_p_pa[node] != p_pa || self.given_m_flow_kg_s[node] != m_flow_kg_s {
+            self.given_p_pa[node] = p_pa;
+            self.given_m_flow_kg_s[node] = m_flow_kg_s;
+            self.hydraulics_valid = false;
+        }
+        self.given_t_k[node] = t_k;
+    }
+
+    /// Marks flows and pressures as not belonging to the present inputs, so that they are solved anew.
+    pub fn invalidate_hydraulics(&mut self) {
+        self.hydraulics_valid = false;
+    }
+
+    /// Pressure difference `p_a - p_b` of an edge, Pa.
+    #[inline]
+    pub fn dp_pa(&self, network: &Network, edge: usize) -> f64 {
+        let edge = &network.edges[edge];
+        self.p_pa[edge.from.index()] - self.p_pa[edge.to.index()]
+    }
+
+    /// Heat stored in all water above 0 degC, J.
+    pub fn stored_j(&self, network: &Network) -> f64 {
+        let medium = &network.medium;
+        let mut stored = 0.0;
+        for (i, node) in network.nodes.iter().enumerate() {
+            stored += node.water_kg(medium.density_kg_m3) * medium.enthalpy_j_kg(self.t_node_k[i]);
+        }
+        for (i, edge) in network.edges.iter().enumerate() {
+            stored += match edge.element.thermal() {
+                EdgeThermal::Pass => 0.0,
+                EdgeThermal::PlugFlow(_) => self.parcels.stored_j(i, medium),
+                EdgeThermal::Exchanger(x) => x.volume_kg * medium.enthalpy_j_kg(self.t_edge_k[i]),
+            };
+        }
+        for (port, edge) in network.ports.iter().enumerate() {
+            if let EdgeThermal::Exchanger(x) = network.edges[edge.index()].element.thermal() {
+                stored += x.volume_kg * medium.enthalpy_j_kg(self.t_secondary_k[port]);
+            }
+        }
+        stored
+    }
+}
+
+/// Lag of each of the two actuator filters over the rise time: `sqrt(sqrt 2 - 1)/5`.
+const RISE_TO_LAG: f64 = 0.128_718_850_581_116_7;
+/// An actuator this close to its target has arrived.
+const SETTLED: f64 = 1e-9;
+
+impl crate::graph::Node {
+    /// Water that mixes at the node, kg: at least 10 mg, so that the temperature of a node without
+    /// volume stays defined, and its energy exact, when the flow stops.
+    #[inline]
+    pub fn water_kg(&self, density_kg_m3: f64) -> f64 {
+        (self.volume_m3 * density_kg_m3).max(1e-5)
+    }
+
+    /// Whether the node's pressure is given.
+    #[inline]
+    pub fn has_fixed_pressure(&self) -> bool {
+        matches!(self.kind, NodeKind::PressureReference | NodeKind::PressureBoundary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::{ElementParams, pump::PumpParams};
+    use crate::graph::{Edge, GRAVITY_M_S2, Node};
+    use anergy_core::ids::NodeId;
+    use anergy_core::medium::Medium;
+
+    #[test]
+    fn pump_follows_its_rise_time_whatever_the_step() {
+        let medium = Medium::default();
+        let node = Node { kind: NodeKind::Junction, elevation_m: 0.0, volume_m3: 0.0 };
+        let edge = Edge {
+            from: NodeId(0),
+            to: NodeId(1),
+            element: ElementParams::Pump(PumpParams::default()).build(&medium).unwrap(),
+            loss_factor: 1.0,
+            partner: None,
+            leads_partner: false,
+        };
+        let network = Network {
+            medium,
+            gravity_m_s2: GRAVITY_M_S2,
+            nodes: vec![node.clone(), node],
+            edges: vec![edge],
+            ports: vec![],
+        };
+        // After the rise time x = 5/sqrt(sqrt 2 - 1) = 7.769: 1 - (1 + x) e^-x = 0.99630
+        let run = |steps: i32| {
+            let mut state = NetworkState::new(&network, 300.0);
+            for _ in 0..steps {
+                state.advance_actuator(&network, 0, 1.0, 8.0 / f64::from(steps));
+            }
+            state.position[0]
+        };
+        let x = 5.0 / (2_f64.sqrt() - 1.0).sqrt();
+        let expected = 1.0 - (1.0 + x) * (-x).exp();
+        assert!((expected - 0.9963).abs() < 1e-4);
+        for steps in [1, 8, 800] {
+            assert!((run(steps) - expected).abs() < 1e-12, "{}", run(steps));
+        }
+    }
+}

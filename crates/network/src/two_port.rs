@@ -1,0 +1,206 @@
+//! The seam between the solver and the hydraulic components.
+//!
+//! A component states what it imposes between its ports as a value and its slope over the mass flow.
+//! The solver owns the equations, the matrix and the iteration; it never sees a component type, and
+//! a component never sees the matrix.
+
+use anergy_core::linear::Linear;
+use thiserror::Error;
+
+/// What an edge imposes between its ports.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Characteristic {
+    /// Pressure loss `p_a - p_b` in Pa and its slope in Pa s/kg over the mass flow; slope > 0 always.
+    PressureLoss(Linear),
+    /// The flow is given, the pressure difference follows.
+    ImposedFlow {
+        /// Mass flow from a to b, kg/s.
+        m_flow_kg_s: f64,
+    },
+    /// The pressure difference is given, the flow follows (ideal head source). An edge that answers
+    /// so once must always do.
+    ImposedPressure {
+        /// `p_a - p_b`, Pa.
+        dp_pa: f64,
+    },
+}
+
+/// What an element is told about its edge at the moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeState {
+    /// Actuator position: pump speed, valve opening, imposed flow or head.
+    pub position: f64,
+    /// Mean density of the water in the edge, kg/m3.
+    pub density_kg_m3: f64,
+    /// Mean dynamic viscosity, Pa s.
+    pub viscosity_pa_s: f64,
+}
+
+/// How water passes through an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EdgeThermal {
+    /// It leaves as it entered.
+    Pass,
+    /// It travels as moving parcels and loses heat.
+    PlugFlow(PlugFlowPipe),
+    /// It exchanges heat with a second stream, then passes a mixed volume.
+    Exchanger(Exchanger),
+}
+
+/// Thermal data of a plug-flow pipe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlugFlowPipe {
+    /// Water content, kg.
+    pub content_kg: f64,
+    /// Time constant of the heat loss, s; infinite without loss.
+    pub loss_time_constant_s: f64,
+}
+
+/// Thermal data of a heat exchanger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exchanger {
+    /// Heat transfer coefficient times area at nominal flows, W/K.
+    pub ua_nominal_w_k: f64,
+    /// Exponent of the flow dependence of both film coefficients; 0 for a constant UA.
+    pub flow_exponent: f64,
+    /// Nominal flow of this edge, kg/s.
+    pub m_flow_nominal_kg_s: f64,
+    /// Nominal flow of the other stream, kg/s.
+    pub m_flow_nominal_secondary_kg_s: f64,
+    /// Counter-flow (true) or parallel flow (false) at nominal directions.
+    pub counter_flow: bool,
+    /// Where `|1 - Cmin/Cmax|` is below this, `NTU/(1 + NTU)` is used.
+    pub equal_capacity_band: f64,
+    /// Mixed water volume of each side, kg.
+    pub volume_kg: f64,
+}
+
+/// A command and how the position follows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Actuator {
+    /// Name of the position (`speed`, `opening`, `m_flow_kg_s`, `head_pa`).
+    pub position: &'static str,
+    /// Name of the command signal; differs from the position for linearised valve commands.
+    pub command: &'static str,
+    /// Suffix of the unit, empty for ratios.
+    pub unit: &'static str,
+    /// Command while nothing drives it.
+    pub initial_command: f64,
+    /// Position at the start of a run.
+    pub initial_position: f64,
+    /// Time after which the position has followed a step by 99.6 %, s; 0 follows at once.
+    pub rise_time_s: f64,
+    /// Smallest command.
+    pub min: f64,
+    /// Largest command.
+    pub max: f64,
+}
+
+/// A hydraulic component between two nodes.
+pub trait TwoPort {
+    /// What the edge imposes at this flow (positive from a to b).
+    fn characteristic(&self, m_flow_kg_s: f64, state: &EdgeState) -> Characteristic;
+
+    /// A typical flow, kg/s: start value of a cold solve.
+    fn m_flow_nominal_kg_s(&self) -> f64;
+
+    /// How water passes.
+    fn thermal(&self) -> EdgeThermal {
+        EdgeThermal::Pass
+    }
+
+    /// The command of this element, if it has one.
+    fn actuator(&self) -> Option<Actuator> {
+        None
+    }
+
+    /// The position that a command asks for in the end.
+    fn target_position(&self, command: f64) -> f64 {
+        self.actuator().map_or(command, |actuator| command.clamp(actuator.min, actuator.max))
+    }
+
+    /// Electric power drawn, W; `None` for elements without a motor.
+    fn electric_power_w(&self, _m_flow_kg_s: f64, _state: &EdgeState) -> Option<f64> {
+        None
+    }
+
+    /// Length along the route, m; zero for what is not a pipe.
+    fn length_m(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A parameter of an element that cannot be.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum ElementError {
+    /// A number outside its range.
+    #[error("{field} = {value} {requirement}")]
+    OutOfRange {
+        /// Field of the model file, in SI.
+        field: &'static str,
+        /// What was given.
+        value: f64,
+        /// For example `must be positive`.
+        requirement: &'static str,
+    },
+    /// Two fields of which exactly one must be given, or a field that another one needs.
+    #[error("{problem}")]
+    Fields {
+        /// Sentence naming the fields.
+        problem: String,
+    },
+    /// A table that cannot carry a curve.
+    #[error("{field}: {problem}")]
+    Table {
+        /// Field of the model file, in SI.
+        field: &'static str,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+impl ElementError {
+    /// The field concerned, where one field is.
+    pub fn field(&self) -> Option<&'static str> {
+        match self {
+            Self::OutOfRange { field, .. } | Self::Table { field, .. } => Some(field),
+            Self::Fields { .. } => None,
+        }
+    }
+}
+
+/// `value` must be finite and positive.
+///
+/// # Errors
+/// Names field and value.
+pub fn positive(field: &'static str, value: f64) -> Result<f64, ElementError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(ElementError::OutOfRange { field, value, requirement: "must be positive" })
+    }
+}
+
+/// `value` must be finite and not negative.
+///
+/// # Errors
+/// Names field and value.
+pub fn not_negative(field: &'static str, value: f64) -> Result<f64, ElementError> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(ElementError::OutOfRange { field, value, requirement: "must not be negative" })
+    }
+}
+
+/// `value` must lie in 0..=1.
+///
+/// # Errors
+/// Names field and value.
+pub fn ratio(field: &'static str, value: f64) -> Result<f64, ElementError> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(ElementError::OutOfRange { field, value, requirement: "must lie between 0 and 1" })
+    }
+}

@@ -1,0 +1,31 @@
+//! REGISTRY of the thermal units: adding one is one file, its `mod` line and its line below.
+
+pub mod heat_load;
+pub mod prescribed_source;
+
+use crate::thermal_unit::{ThermalUnit, UnitError};
+use anergy_core::medium::Medium;
+
+anergy_core::registry! {
+    /// Every thermal unit a model file can name.
+    pub enum Equipment: dyn ThermalUnit, params EquipmentParams, context Medium, error UnitError {
+        PrescribedSource("prescribed_source", prescribed_source::PrescribedSource, prescribed_source::PrescribedSourceParams),
+        HeatLoad("heat_load", heat_load::HeatLoad, heat_load::HeatLoadParams),
+    }
+}
+
+/// A temperature at which the water of a unit is liquid, K.
+///
+/// # Errors
+/// Names the field and its value.
+pub(crate) fn liquid(field: &'static str, t_k: f64) -> Result<f64, UnitError> {
+    if (273.15..=373.15).contains(&t_k) {
+        Ok(t_k)
+    } else {
+        Err(UnitError::OutOfRange {
+            field,
+            value: t_k,
+            requirement: "must lie between 273.15 K (0 degC) and 373.15 K (100 degC)",
+        })
+    }
+}

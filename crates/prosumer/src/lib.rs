@@ -1,0 +1,4 @@
+//! Thermal-only prosumer units: they see temperatures, flows and heat, never a pressure or the graph.
+
+pub mod equipment;
+pub mod thermal_unit;

@@ -1,0 +1,342 @@
+//! Which series the plots offer, which of them are shown first, and the blocked intervals.
+
+use crate::decimate::Buckets;
+use crate::display::Display;
+use crate::escape;
+use crate::lookup::{Lookup, value};
+use crate::sites::SiteGraph;
+use anergy_core::recorder::ChannelGroup::{Edges, Interfaces, Nodes};
+use serde::Serialize;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Points of a series at most.
+pub const MAX_POINTS: usize = 2000;
+/// Points of a series at least, as long as series are not left out.
+const MIN_POINTS: usize = 100;
+/// Values embedded for plots at most: 4 bytes each, 5.3 in base64.
+const VALUE_BUDGET: usize = 1_800_000;
+/// Series of one panel at most.
+const MAX_SERIES: usize = 3000;
+/// Series of one panel that are shown first.
+const SHOWN_SERIES: usize = 12;
+
+/// One plot of the report: one or more panels of one subject.
+#[derive(Debug, Serialize)]
+pub struct Plot {
+    /// `flows`, `pressures`, `temperatures`, `speeds`.
+    pub id: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// What the sign means, or which components are drawn.
+    pub note: &'static str,
+    /// Sets of axes.
+    pub panels: Vec<Panel>,
+}
+
+/// One set of axes.
+#[derive(Debug, Serialize)]
+pub struct Panel {
+    /// Heading and vertical axis.
+    pub title: &'static str,
+    /// Unit of the vertical axis.
+    pub display: Display,
+    /// Curves.
+    pub series: Vec<Series>,
+    /// Series that were recorded but are not embedded.
+    pub left_out: usize,
+}
+
+/// One curve.
+#[derive(Debug, Serialize)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// Place: curves of one place have one colour.
+    pub key: String,
+    /// Whether it is drawn before anyone chooses.
+    pub shown: bool,
+    /// Points, SI, base64 of 32-bit floats.
+    pub data: String,
+}
+
+/// A time during which an interface could not do what was asked of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Blocked {
+    /// Interface.
+    pub component: String,
+    /// Place of the interface.
+    pub key: String,
+    /// Start, s.
+    pub from: f64,
+    /// End, s; `None` when it lasts until the end of the run.
+    pub to: Option<f64>,
+}
+
+/// All that the plots draw.
+pub struct Plots {
+    /// The four plots.
+    pub plots: Vec<Plot>,
+    /// Times of the points, s.
+    pub times: Vec<f64>,
+    /// Whether points stand for several rows.
+    pub decimated: bool,
+}
+
+struct Source<'a> {
+    name: String,
+    key: String,
+    column: Cow<'a, [f64]>,
+}
+
+struct Draft<'a> {
+    title: &'static str,
+    display: Display,
+    sources: Vec<Source<'a>>,
+}
+
+/// Chooses, ranks and decimates.
+pub fn plots(lookup: &Lookup, sites: &SiteGraph, blocked: &[Blocked], density_kg_m3: f64) -> Plots {
+    let collector = Collector { lookup, sites };
+    let flow = Display::flow(density_kg_m3);
+    let (flows, note) = collector.flows();
+    let drafts = [
+        ("flows", "Flows", note, vec![draft("Flow", flow, flows)]),
+        (
+            "pressures",
+            "Pressures",
+            "",
+            vec![
+                draft("Pressure", Display::pressure(), collector.outer_nodes("p_pa")),
+                draft("Difference hot − cold", Display::pressure(), collector.differences()),
+            ],
+        ),
+        (
+            "temperatures",
+            "Temperatures",
+            "",
+            vec![draft("Temperature", Display::temperature(), collector.outer_nodes("t_k"))],
+        ),
+        (
+            "speeds",
+            "Pump speeds",
+            "Speed relative to nominal speed.",
+            vec![
+                draft("Pump speed", Display::ratio(), collector.edges("speed")),
+                draft("Valve opening", Display::ratio(), collector.edges("opening")),
+            ],
+        ),
+    ];
+    let offered = |draft: &Draft| draft.sources.len().min(MAX_SERIES);
+    let count: usize = drafts.iter().flat_map(|plot| &plot.3).map(offered).sum();
+    let points = (VALUE_BUDGET / count.max(1)).clamp(MIN_POINTS, MAX_POINTS);
+    let buckets = Buckets::new(lookup.rows, points);
+    let stuck: BTreeSet<&str> = blocked.iter().map(|interval| interval.key.as_str()).collect();
+    let finish = |(id, title, note, drafts): (_, _, &'static str, Vec<Draft>)| Plot {
+        id,
+        title,
+        note,
+        panels: drafts
+            .into_iter()
+            .filter(|draft| !draft.sources.is_empty())
+            .map(|draft| panel(draft, lookup.rows, &buckets, &stuck))
+            .collect(),
+    };
+    Plots {
+        plots: drafts.into_iter().map(finish).collect(),
+        times: buckets.times(lookup.times()),
+        decimated: buckets.is_decimated(),
+    }
+}
+
+fn draft<'a>(title: &'static str, display: Display, sources: Vec<Source<'a>>) -> Draft<'a> {
+    Draft { title, display, sources }
+}
+
+fn panel(draft: Draft, rows: usize, buckets: &Buckets, stuck: &BTreeSet<&str>) -> Panel {
+    let ranked = rank(&draft.sources, rows, stuck);
+    let chosen = |limit: usize| {
+        let mut keys = BTreeSet::new();
+        let mut count = 0;
+        for (key, size) in &ranked {
+            if count > 0 && count + size > limit {
+                break;
+            }
+            count += size;
+            keys.insert(key.clone());
+        }
+        keys
+    };
+    let (shown, kept) = (chosen(SHOWN_SERIES), chosen(MAX_SERIES));
+    let total = draft.sources.len();
+    let kept = draft.sources.into_iter().filter(|source| kept.contains(&source.key));
+    let series: Vec<Series> = kept
+        .map(|source| Series {
+            shown: shown.contains(&source.key),
+            data: escape::base64_f32(&buckets.values(&source.column)),
+            name: source.name,
+            key: source.key,
+        })
+        .collect();
+    let left_out = total - series.len();
+    Panel { title: draft.title, display: draft.display, series, left_out }
+}
+
+/// Places with their number of series, the most telling first: blocked ones, then by the largest
+/// change of a series in time, then by magnitude.
+fn rank(sources: &[Source], rows: usize, stuck: &BTreeSet<&str>) -> Vec<(String, usize)> {
+    struct Score {
+        key: String,
+        size: usize,
+        stuck: bool,
+        change: f64,
+        magnitude: f64,
+        order: usize,
+    }
+    let mut scores: BTreeMap<&str, Score> = BTreeMap::new();
+    for (order, source) in sources.iter().enumerate() {
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for x in (0..rows).map(|row| value(&source.column, row)).filter(|x| x.is_finite()) {
+            (least, greatest) = (least.min(x), greatest.max(x));
+        }
+        let score = scores.entry(&source.key).or_insert_with(|| Score {
+            key: source.key.clone(),
+            size: 0,
+            stuck: stuck.contains(source.key.as_str()),
+            change: 0.0,
+            magnitude: 0.0,
+            order,
+        });
+        score.size += 1;
+        if least <= greatest {
+            score.change = score.change.max(greatest - least);
+            score.magnitude = score.magnitude.max(greatest.abs().max(least.abs()));
+        }
+    }
+    let mut scores: Vec<Score> = scores.into_values().collect();
+    scores.sort_by(|a, b| {
+        let stuck = b.stuck.cmp(&a.stuck);
+        let change = b.change.total_cmp(&a.change);
+        stuck.then(change).then(b.magnitude.total_cmp(&a.magnitude)).then(a.order.cmp(&b.order))
+    });
+    scores.into_iter().map(|score| (score.key, score.size)).collect()
+}
+
+struct Collector<'a, 'b> {
+    lookup: &'b Lookup<'a>,
+    sites: &'b SiteGraph,
+}
+
+impl<'a> Collector<'a, '_> {
+    fn source(&self, component: &str, quantity: &str, name: String) -> Option<Source<'a>> {
+        let column = Cow::Borrowed(self.lookup.column(component, quantity)?);
+        Some(Source { name, key: self.sites.place_of(component).to_owned(), column })
+    }
+
+    /// Interfaces with their requests; without interfaces pumps, and without those all edges.
+    fn flows(&self) -> (Vec<Source<'a>>, &'static str) {
+        const FLOW: &str = "m_flow_kg_s";
+        const REQUEST: &str = "requested_m_flow_kg_s";
+        let mut sources = Vec::new();
+        for component in self.lookup.components(Interfaces, FLOW) {
+            sources.extend(self.source(component, FLOW, component.to_owned()));
+            sources.extend(self.source(component, REQUEST, format!("{component} requested")));
+        }
+        if !sources.is_empty() {
+            return (sources, "Stations: positive feeds in (cold to hot), negative extracts.");
+        }
+        let edges = &self.lookup.recording.header.map.edges;
+        let flow = |id: &str| self.source(id, FLOW, id.to_owned());
+        let pumps = edges.iter().filter(|edge| edge.kind.contains("pump"));
+        let pumps: Vec<Source> = pumps.filter_map(|edge| flow(&edge.id)).collect();
+        if !pumps.is_empty() {
+            return (pumps, "Pumps: positive in the direction of the pump.");
+        }
+        let all = self.lookup.components(Edges, FLOW).filter_map(flow).collect();
+        (all, "Edges: positive from port a to port b.")
+    }
+
+    /// A quantity of the nodes on the map: hot and cold nodes of sites, and plain nodes.
+    fn outer_nodes(&self, quantity: &str) -> Vec<Source<'a>> {
+        let nodes = &self.lookup.recording.header.map.nodes;
+        let outer = self.sites.vertices.iter().flat_map(|vertex| [vertex.hot, vertex.cold]);
+        let ids = outer.flatten().filter_map(|index| nodes.get(index)).map(|node| &node.id);
+        let mut sources: Vec<Source> =
+            ids.filter_map(|id| self.source(id, quantity, id.clone())).collect();
+        if sources.is_empty() {
+            let all = self.lookup.components(Nodes, quantity);
+            sources = all.filter_map(|id| self.source(id, quantity, id.to_owned())).collect();
+        }
+        sources
+    }
+
+    /// Pressure of the hot node minus that of the cold node: of sites with station, or else of all.
+    fn differences(&self) -> Vec<Source<'a>> {
+        let nodes = &self.lookup.recording.header.map.nodes;
+        let column = |node: Option<usize>| self.lookup.column(&nodes.get(node?)?.id, "p_pa");
+        let difference = |vertex: &crate::sites::Vertex| {
+            let (hot, cold) = (column(vertex.hot)?, column(vertex.cold)?);
+            let column = hot.iter().zip(cold).map(|(hot, cold)| hot - cold).collect();
+            let key = vertex.name.clone();
+            Some(Source { name: key.clone(), key, column: Cow::Owned(column) })
+        };
+        let vertices = &self.sites.vertices;
+        let any = vertices.iter().any(|vertex| !vertex.stations.is_empty());
+        let wanted = vertices.iter().filter(|vertex| !any || !vertex.stations.is_empty());
+        wanted.filter_map(difference).collect()
+    }
+
+    fn edges(&self, quantity: &str) -> Vec<Source<'a>> {
+        let all = self.lookup.components(Edges, quantity);
+        all.filter_map(|id| self.source(id, quantity, id.to_owned())).collect()
+    }
+}
+
+/// Blocked intervals: from the events of a component, which have exact times, or else from its flag.
+pub fn blocked(lookup: &Lookup, sites: &SiteGraph) -> Vec<Blocked> {
+    let mut intervals: Vec<Blocked> = Vec::new();
+    let mut open = |component: &str, from: f64| {
+        let (key, component) = (sites.place_of(component).to_owned(), component.to_owned());
+        intervals.push(Blocked { component, key, from, to: None });
+        intervals.len() - 1
+    };
+    let mut running: BTreeMap<&str, Option<usize>> = BTreeMap::new();
+    let mut ends: Vec<(usize, f64)> = Vec::new();
+    for event in &lookup.recording.events {
+        let time = event.time.as_s();
+        match event.kind.as_str() {
+            "blocked" => {
+                let interval = running.entry(&event.component).or_insert(None);
+                if interval.is_none() {
+                    *interval = Some(open(&event.component, time));
+                }
+            }
+            "unblocked" => {
+                let interval = running.entry(&event.component).or_insert(None);
+                ends.extend(interval.take().map(|interval| (interval, time)));
+            }
+            _ => {}
+        }
+    }
+    for component in lookup.components(Interfaces, "blocked") {
+        let Some(column) = lookup.column(component, "blocked") else { continue };
+        if running.contains_key(component) {
+            continue;
+        }
+        let mut since = None;
+        for (row, &time) in lookup.times().iter().enumerate() {
+            match (value(column, row) > 0.5, since) {
+                (true, None) => since = Some(open(component, time)),
+                (false, Some(interval)) => {
+                    ends.push((interval, time));
+                    since = None;
+                }
+                _ => {}
+            }
+        }
+    }
+    for (interval, time) in ends {
+        intervals[interval].to = Some(time);
+    }
+    intervals
+}

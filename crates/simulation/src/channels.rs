@@ -1,0 +1,223 @@
+//! What can be recorded and measured: every quantity of every component by name.
+
+use crate::simulation::{Plan, State};
+use anergy_core::ids::SignalId;
+use anergy_core::port::Port;
+use anergy_core::recorder::{Channel, ChannelGroup};
+use anergy_network::elements::Element;
+
+/// Where the value of a channel comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// Pressure of a node, Pa.
+    NodePressure(usize),
+    /// Temperature of a node, K.
+    NodeTemperature(usize),
+    /// Water that a boundary brings in, kg/s.
+    NodeExchange(usize),
+    /// Flow of an edge, kg/s.
+    EdgeFlow(usize),
+    /// Pressure difference of an edge, Pa.
+    EdgePressure(usize),
+    /// Actuator position of an edge.
+    EdgePosition(usize),
+    /// Electric power of an edge, W.
+    EdgePower(usize),
+    /// Temperature at an end of a pipe, K.
+    PipeEnd(usize, Port),
+    /// Heat lost by a pipe, W.
+    EdgeLoss(usize),
+    /// Heat taken up by an edge, W.
+    EdgeHeat(usize),
+    /// Temperature of the volume of an edge, K.
+    EdgeVolume(usize),
+    /// Flow of a station, kg/s.
+    StationFlow(usize),
+    /// Heat fed in by a station, W.
+    StationHeat(usize),
+    /// Cumulative heat fed in by a station, J.
+    StationEnergy(usize),
+    /// Flow that a station's pump means to deliver, kg/s.
+    StationRequest(usize),
+    /// Whether a station is blocked.
+    StationBlocked(usize),
+    /// An output of a unit.
+    UnitOutput(usize),
+    /// An input signal.
+    Signal(SignalId),
+    /// Electric power of all pumps, W.
+    TotalElectric,
+    /// Heat from all units, W.
+    TotalUnits,
+    /// Heat lost by all pipes and nodes, W.
+    TotalLoss,
+    /// Enthalpy flow through boundaries, W.
+    TotalBoundary,
+    /// Heat stored in all water, J.
+    Stored,
+    /// One of the cumulative sums, J.
+    Cumulative(Cumulative),
+}
+
+/// Energies since the start of the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cumulative {
+    /// Electricity of the pumps.
+    Electric,
+    /// Heat from the units.
+    Units,
+    /// Heat lost.
+    Loss,
+    /// Enthalpy through boundaries.
+    Boundary,
+}
+
+/// The channels of a plan and where their values come from; `names` are those of the model.
+pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
+    let mut list = List { channels: Vec::new(), sources: Vec::new() };
+    for (i, name) in plan.node_names.iter().enumerate() {
+        list.add(ChannelGroup::Nodes, name, "p_pa", "Pa", Source::NodePressure(i));
+        list.add(ChannelGroup::Nodes, name, "t_k", "K", Source::NodeTemperature(i));
+        if plan.network.nodes[i].kind != anergy_network::graph::NodeKind::Junction {
+            let exchange = Source::NodeExchange(i);
+            list.add(ChannelGroup::Nodes, name, "exchange_kg_s", "kg s-1", exchange);
+        }
+    }
+    for (i, name) in plan.edge_names.iter().enumerate() {
+        edge_channels(&mut list, plan, i, name);
+    }
+    for (i, station) in plan.stations.iter().enumerate() {
+        let name = &plan.station_names[i];
+        let group = ChannelGroup::Interfaces;
+        list.add(group, name, "m_flow_kg_s", "kg s-1", Source::StationFlow(i));
+        list.add(group, name, "q_flow_w", "W", Source::StationHeat(i));
+        list.add(group, name, "heat_j", "J", Source::StationEnergy(i));
+        if station.requested_m_flow_kg_s.is_some() {
+            let request = Source::StationRequest(i);
+            list.add(group, name, "requested_m_flow_kg_s", "kg s-1", request);
+            list.add(group, name, "blocked", "1", Source::StationBlocked(i));
+        }
+    }
+    for unit in &plan.units {
+        for (k, (quantity, unit_word)) in unit.equipment.outputs().iter().enumerate() {
+            let source = Source::UnitOutput(unit.outputs.start + k);
+            list.add(ChannelGroup::Units, &unit.name, quantity, unit_word, source);
+        }
+    }
+    for (i, spec) in plan.signals.specs().iter().enumerate() {
+        let (component, quantity) = spec.name.rsplit_once('.').unwrap_or(("", &spec.name));
+        let unit = udunits(spec.unit);
+        let quantity = format!("{quantity}_command");
+        let source = Source::Signal(SignalId::from_index(i));
+        list.add(ChannelGroup::Control, component, &quantity, unit, source);
+    }
+    for (quantity, unit, source) in [
+        ("electric_w", "W", Source::TotalElectric),
+        ("units_w", "W", Source::TotalUnits),
+        ("loss_w", "W", Source::TotalLoss),
+        ("boundary_w", "W", Source::TotalBoundary),
+        ("stored_j", "J", Source::Stored),
+        ("electric_j", "J", Source::Cumulative(Cumulative::Electric)),
+        ("units_j", "J", Source::Cumulative(Cumulative::Units)),
+        ("loss_j", "J", Source::Cumulative(Cumulative::Loss)),
+        ("boundary_j", "J", Source::Cumulative(Cumulative::Boundary)),
+    ] {
+        list.add(ChannelGroup::Balances, "network", quantity, unit, source);
+    }
+    (list.channels, list.sources)
+}
+
+struct List {
+    channels: Vec<Channel>,
+    sources: Vec<Source>,
+}
+
+impl List {
+    fn add(
+        &mut self,
+        group: ChannelGroup,
+        component: &str,
+        quantity: &str,
+        unit: &str,
+        source: Source,
+    ) {
+        self.channels.push(Channel {
+            name: format!("{component}.{quantity}"),
+            unit: unit.to_owned(),
+            group,
+            component: component.to_owned(),
+            quantity: quantity.to_owned(),
+        });
+        self.sources.push(source);
+    }
+}
+
+fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
+    let group = ChannelGroup::Edges;
+    let element = &plan.network.edges[i].element;
+    list.add(group, name, "m_flow_kg_s", "kg s-1", Source::EdgeFlow(i));
+    list.add(group, name, "dp_pa", "Pa", Source::EdgePressure(i));
+    match element {
+        Element::Pump(_) => {
+            list.add(group, name, "speed", "1", Source::EdgePosition(i));
+            list.add(group, name, "power_w", "W", Source::EdgePower(i));
+        }
+        Element::Valve(_) => list.add(group, name, "opening", "1", Source::EdgePosition(i)),
+        Element::Pipe(_) => {
+            list.add(group, name, "t_a_k", "K", Source::PipeEnd(i, Port::A));
+            list.add(group, name, "t_b_k", "K", Source::PipeEnd(i, Port::B));
+            list.add(group, name, "q_loss_w", "W", Source::EdgeLoss(i));
+        }
+        Element::HeatExchanger(_) => {
+            list.add(group, name, "q_flow_w", "W", Source::EdgeHeat(i));
+            list.add(group, name, "t_out_k", "K", Source::EdgeVolume(i));
+        }
+        _ => {}
+    }
+}
+
+fn udunits(suffix: &str) -> &'static str {
+    match suffix {
+        "kg_s" => "kg s-1",
+        "m3_s" => "m3 s-1",
+        "pa" => "Pa",
+        "k" => "K",
+        "w" => "W",
+        _ => "1",
+    }
+}
+
+/// The value of a channel now.
+pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
+    let network = &state.network;
+    let heat = |edge: usize| network.q_flow_w[edge];
+    match source {
+        Source::NodePressure(i) => network.p_pa[i],
+        Source::NodeTemperature(i) => network.t_node_k[i],
+        Source::NodeExchange(i) => network.exchange_kg_s[i],
+        Source::EdgeFlow(i) => network.m_flow_kg_s[i],
+        Source::EdgePressure(i) => network.dp_pa(&plan.network, i),
+        Source::EdgePosition(i) => network.position[i],
+        Source::EdgePower(i) => plan.electric_w(network, i),
+        Source::PipeEnd(i, port) => network.parcels.end_k(i, port).unwrap_or(f64::NAN),
+        Source::EdgeLoss(i) => network.q_loss_w[i],
+        Source::EdgeHeat(i) => heat(i),
+        Source::EdgeVolume(i) => network.t_edge_k[i],
+        Source::StationFlow(i) => plan.stations[i].m_flow_kg_s(network),
+        Source::StationHeat(i) => heat(plan.stations[i].edge.index()),
+        Source::StationEnergy(i) => state.station_heat_j[i],
+        Source::StationRequest(i) => plan.stations[i].requested_m_flow_kg_s.unwrap_or(0.0),
+        Source::StationBlocked(i) => f64::from(u8::from(state.stations[i].blocked)),
+        Source::UnitOutput(i) => state.unit_outputs[i],
+        Source::Signal(id) => state.signals[id.index()],
+        Source::TotalElectric => plan.total_electric_w(network),
+        Source::TotalUnits => plan.total_units_w(network),
+        Source::TotalLoss => plan.total_loss_w(network),
+        Source::TotalBoundary => network.boundary_w,
+        Source::Stored => network.stored_j(&plan.network),
+        Source::Cumulative(Cumulative::Electric) => state.electric_j,
+        Source::Cumulative(Cumulative::Units) => state.units_j,
+        Source::Cumulative(Cumulative::Loss) => state.loss_j,
+        Source::Cumulative(Cumulative::Boundary) => state.boundary_j,
+    }
+}

@@ -1,0 +1,229 @@
+//! A model text as a tree of values that remember their place; TOML or JSON.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use serde_json::{Map, Value};
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// A value with its place in the text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tree {
+    /// Bytes of the text; `None` when the value did not come from a text.
+    pub span: Option<Range<usize>>,
+    /// What it is.
+    pub kind: TreeKind,
+}
+
+/// A table, an array or a single value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TreeKind {
+    /// Keys in the order of the text.
+    Table(Vec<(Key, Tree)>),
+    /// Elements in order.
+    Array(Vec<Tree>),
+    /// A string, number or boolean.
+    Scalar(Value),
+}
+
+/// A key with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// The word.
+    pub name: String,
+    /// Bytes of the text.
+    pub span: Option<Range<usize>>,
+}
+
+impl Tree {
+    /// A table made by the program, at the place of what it was made from.
+    pub fn table(span: Option<Range<usize>>, entries: Vec<(&str, Value)>) -> Self {
+        let entries = entries
+            .into_iter()
+            .map(|(name, value)| {
+                let key = Key { name: name.to_owned(), span: span.clone() };
+                (key, Self::from_json(&value, span.as_ref()))
+            })
+            .collect();
+        Self { span, kind: TreeKind::Table(entries) }
+    }
+
+    /// A JSON value; every part gets the same place.
+    pub fn from_json(value: &Value, span: Option<&Range<usize>>) -> Self {
+        let kind = match value {
+            Value::Object(map) => TreeKind::Table(
+                map.iter()
+                    .map(|(name, value)| {
+                        let key = Key { name: name.clone(), span: span.cloned() };
+                        (key, Self::from_json(value, span))
+                    })
+                    .collect(),
+            ),
+            Value::Array(items) => {
+                TreeKind::Array(items.iter().map(|item| Self::from_json(item, span)).collect())
+            }
+            scalar => TreeKind::Scalar(scalar.clone()),
+        };
+        Self { span: span.cloned(), kind }
+    }
+
+    /// The value without places.
+    pub fn to_json(&self) -> Value {
+        match &self.kind {
+            TreeKind::Table(entries) => Value::Object(
+                entries.iter().map(|(key, tree)| (key.name.clone(), tree.to_json())).collect(),
+            ),
+            TreeKind::Array(items) => Value::Array(items.iter().map(Self::to_json).collect()),
+            TreeKind::Scalar(value) => value.clone(),
+        }
+    }
+
+    /// The entries of a table; nothing for other kinds.
+    pub fn entries(&self) -> &[(Key, Tree)] {
+        match &self.kind {
+            TreeKind::Table(entries) => entries,
+            _ => &[],
+        }
+    }
+
+    /// The value of a key.
+    pub fn get(&self, name: &str) -> Option<&Self> {
+        self.entries().iter().find(|(key, _)| key.name == name).map(|(_, tree)| tree)
+    }
+
+    /// The string value of a key.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match &self.get(name)?.kind {
+            TreeKind::Scalar(Value::String(text)) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Takes a key out of a table.
+    pub fn take(&mut self, name: &str) -> Option<(Key, Tree)> {
+        let TreeKind::Table(entries) = &mut self.kind else { return None };
+        let at = entries.iter().position(|(key, _)| key.name == name)?;
+        Some(entries.remove(at))
+    }
+
+    /// Adds the entries of `defaults` whose keys are not there.
+    pub fn fill_from(&mut self, defaults: &Self) {
+        if let TreeKind::Table(entries) = &mut self.kind {
+            for (key, tree) in defaults.entries() {
+                if !entries.iter().any(|(own, _)| own.name == key.name) {
+                    entries.push((key.clone(), tree.clone()));
+                }
+            }
+        }
+    }
+
+    /// What the value is called in an error message.
+    pub fn type_name(&self) -> &'static str {
+        match &self.kind {
+            TreeKind::Table(_) => "a table",
+            TreeKind::Array(_) => "an array",
+            TreeKind::Scalar(Value::String(_)) => "a string",
+            TreeKind::Scalar(Value::Number(_)) => "a number",
+            TreeKind::Scalar(Value::Bool(_)) => "a boolean",
+            TreeKind::Scalar(_) => "nothing",
+        }
+    }
+}
+
+/// Parses TOML text.
+///
+/// # Errors
+/// The syntax errors, or numbers that are not finite, with their places.
+pub fn parse_toml(text: &str) -> Result<Tree, Diagnostics> {
+    let (table, errors) = DeTable::parse_recoverable(text);
+    if !errors.is_empty() {
+        let problems = errors.iter().map(|error| {
+            Diagnostic::new(format!("not valid TOML: {}", error.message()), error.span())
+        });
+        return Err(Diagnostics(problems.collect()));
+    }
+    let mut problems = Vec::new();
+    let span = table.span();
+    let tree = convert_table(table.get_ref(), span, &mut problems);
+    if problems.is_empty() { Ok(tree) } else { Err(Diagnostics(problems)) }
+}
+
+fn convert_table(table: &DeTable<'_>, span: Range<usize>, problems: &mut Vec<Diagnostic>) -> Tree {
+    let entries = table
+        .iter()
+        .map(|(key, value)| {
+            let name = key.get_ref().to_string();
+            let tree = convert(value.get_ref(), value.span(), &name, problems);
+            (Key { name, span: Some(key.span()) }, tree)
+        })
+        .collect();
+    Tree { span: Some(span), kind: TreeKind::Table(entries) }
+}
+
+fn convert(
+    value: &DeValue<'_>,
+    span: Range<usize>,
+    name: &str,
+    problems: &mut Vec<Diagnostic>,
+) -> Tree {
+    let mut wrong = |what: String| {
+        problems.push(Diagnostic::new(format!("{name} = {what}"), Some(span.clone())));
+        Value::Null
+    };
+    let scalar = match value {
+        DeValue::String(text) => Value::String(text.to_string()),
+        DeValue::Boolean(flag) => Value::Bool(*flag),
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .map_or_else(|_| wrong(format!("{integer} is too large a number")), Value::from),
+        DeValue::Float(float) => {
+            let number = float.as_str().parse::<f64>().ok().and_then(serde_json::Number::from_f64);
+            number.map_or_else(
+                || wrong(format!("{} is not a finite number", float.as_str())),
+                Value::Number,
+            )
+        }
+        DeValue::Datetime(datetime) => Value::String(datetime.to_string()),
+        DeValue::Array(items) => {
+            let items = items
+                .iter()
+                .map(|item| convert(item.get_ref(), item.span(), name, problems))
+                .collect();
+            return Tree { span: Some(span), kind: TreeKind::Array(items) };
+        }
+        DeValue::Table(table) => return convert_table(table, span, problems),
+    };
+    Tree { span: Some(span), kind: TreeKind::Scalar(scalar) }
+}
+
+/// Writes a JSON object as TOML text.
+///
+/// # Errors
+/// When the object has something TOML cannot hold (`null`).
+pub fn to_toml(value: &Map<String, Value>) -> Result<String, Diagnostics> {
+    toml::to_string(value).map_err(|error| {
+        Diagnostics(vec![Diagnostic::new(format!("cannot be written as TOML: {error}"), None)])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_keep_their_places() {
+        let text = "[run]\nstep = \"1s\"\n[[edge]]\nid = \"p\"\nlength_m = 2_00.5\n";
+        let tree = parse_toml(text).unwrap();
+        let edges = tree.get("edge").unwrap();
+        let TreeKind::Array(items) = &edges.kind else { panic!() };
+        let length = items[0].get("length_m").unwrap();
+        assert_eq!(&text[length.span.clone().unwrap()], "2_00.5");
+        assert_eq!(length.to_json(), Value::from(200.5));
+        assert_eq!(tree.get("run").unwrap().text("step"), Some("1s"));
+    }
+
+    #[test]
+    fn nan_and_syntax_errors_have_a_place() {
+        let error = parse_toml("a = 1\nb = nan\n").unwrap_err();
+        assert_eq!(error.render("a = 1\nb = nan\n"), "2:5: b = nan is not a finite number\n");
+        assert!(parse_toml("a = \n").unwrap_err().0[0].span.is_some());
+    }
+}

@@ -1,0 +1,133 @@
+//! Why a run cannot go on, with the names of the model.
+
+use crate::diagnostic::Diagnostics;
+use anergy_core::error::{FactorError, RecordError};
+use thiserror::Error;
+
+/// Why a run or a solve failed.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The model is wrong.
+    #[error(transparent)]
+    Model(#[from] Diagnostics),
+    /// The hydraulics did not converge.
+    #[error(
+        "at {time}: the hydraulics did not converge in {iterations} iterations; worst are edge \
+         \"{edge}\", which misses its law by {residual_pa:.3e} Pa, and node \"{node}\", which misses its \
+         mass balance by {mass_residual_kg_s:.3e} kg/s"
+    )]
+    NotConverged {
+        /// Simulated time.
+        time: String,
+        /// Iterations done.
+        iterations: u32,
+        /// Edge with the largest residual.
+        edge: String,
+        /// Its residual, Pa.
+        residual_pa: f64,
+        /// Node with the largest mass residual.
+        node: String,
+        /// Its residual, kg/s.
+        mass_residual_kg_s: f64,
+    },
+    /// Imposed flows leave a part of the network with more water than can leave.
+    #[error(
+        "at {time}: {m_flow_kg_s:.6} kg/s more enter than can leave the part of the network around node \
+         \"{node}\": flows are imposed on all its ends, or its circuit only has a pressure reference, \
+         which exchanges no water"
+    )]
+    Unbalanced {
+        /// Simulated time.
+        time: String,
+        /// A node of the part.
+        node: String,
+        /// Surplus, kg/s.
+        m_flow_kg_s: f64,
+    },
+    /// A component got or gave a number that is not finite.
+    #[error("at {time}: {component} has a value that is not a finite number")]
+    NotFinite {
+        /// Simulated time.
+        time: String,
+        /// The component.
+        component: String,
+    },
+    /// Temperatures left the validity of the medium.
+    #[error(
+        "at {time}: the water at \"{component}\" has {t_degc:.2} degC; the model is valid from 0 to 100 degC"
+    )]
+    Temperature {
+        /// Simulated time.
+        time: String,
+        /// Node concerned.
+        component: String,
+        /// Temperature, degC.
+        t_degc: f64,
+    },
+    /// A linear system is singular.
+    #[error("at {time}: {source}")]
+    Singular {
+        /// Simulated time.
+        time: String,
+        /// The reason.
+        #[source]
+        source: FactorError,
+    },
+    /// A controller failed.
+    #[error("at {time}: controller \"{controller}\": {source}")]
+    Control {
+        /// Simulated time.
+        time: String,
+        /// The controller.
+        controller: String,
+        /// The reason.
+        #[source]
+        source: anergy_control::controller::ControlError,
+    },
+    /// The steady state was not found.
+    #[error("the steady state was not found after {iterations} rounds: {culprit}")]
+    NotSettled {
+        /// Rounds done.
+        iterations: u32,
+        /// What still moves.
+        culprit: String,
+    },
+    /// A name that the simulation does not know.
+    #[error("there is no {what} \"{name}\"{hint}")]
+    UnknownName {
+        /// Signal or channel.
+        what: &'static str,
+        /// What was asked for.
+        name: String,
+        /// Similar names.
+        hint: String,
+    },
+    /// A value that a signal cannot have.
+    #[error("{signal} = {value} is outside {min} to {max}")]
+    OutOfRange {
+        /// The signal.
+        signal: String,
+        /// What was asked for.
+        value: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// A snapshot of another model, or torn.
+    #[error("this snapshot does not fit the model: {problem}")]
+    Snapshot {
+        /// What does not fit.
+        problem: String,
+    },
+    /// The results could not be kept.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+impl RunError {
+    /// Whether the numerics failed (and not the model or the disk).
+    pub fn is_numerical(&self) -> bool {
+        matches!(self, Self::NotConverged { .. } | Self::Singular { .. } | Self::NotSettled { .. })
+    }
+}

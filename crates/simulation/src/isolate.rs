@@ -1,0 +1,139 @@
+//! Cuts a sub-graph out of a model: its cut nodes become boundaries driven by series.
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{DriverSpec, Model, Place};
+use crate::model_file::{Interpolation, NodeEntryKind};
+use std::collections::{HashMap, HashSet};
+
+/// What is given at a cut node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CutKind {
+    /// The pressure; the flow through the cut is a result.
+    Pressure,
+    /// The flow into the cut-out part, kg/s; the pressure is a result.
+    Flow,
+}
+
+/// A cut node with the series that drive it, SI, linear between the times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut {
+    /// The node.
+    pub node: String,
+    /// What is given.
+    pub kind: CutKind,
+    /// Times, s.
+    pub times_s: Vec<f64>,
+    /// Pressure in Pa or flow into the part in kg/s.
+    pub values: Vec<f64>,
+    /// Temperature of entering water, K.
+    pub t_k: Vec<f64>,
+}
+
+impl Model {
+    /// The model of the edges named in `components`; every node that also belongs to another edge must be
+    /// in `boundary`. Units, stations, controllers and drivers of what remains are kept.
+    ///
+    /// # Errors
+    /// Unknown edges, cut nodes without a boundary, boundaries that are no cut nodes.
+    pub fn isolate(&self, components: &[&str], boundary: &[Cut]) -> Result<Self, Diagnostics> {
+        let mut problems = Vec::new();
+        let mut report = |message: String| problems.push(Diagnostic::new(message, None));
+        let wanted: HashSet<&str> = components.iter().copied().collect();
+        for name in components {
+            if self.edge(name).is_none() {
+                report(format!("isolate: there is no edge \"{name}\""));
+            }
+        }
+        let mut model = self.clone();
+        model.edges.retain(|edge| wanted.contains(edge.id.as_str()));
+        let touched = |inside: bool| -> HashSet<&str> {
+            self.edges
+                .iter()
+                .filter(|edge| wanted.contains(edge.id.as_str()) == inside)
+                .flat_map(|edge| [edge.from.as_str(), edge.to.as_str()])
+                .collect()
+        };
+        let (inside, outside) = (touched(true), touched(false));
+        let cuts: HashMap<&str, &Cut> =
+            boundary.iter().map(|cut| (cut.node.as_str(), cut)).collect();
+        let mut cut_nodes: Vec<&str> = inside.intersection(&outside).copied().collect();
+        cut_nodes.sort_unstable();
+        for node in &cut_nodes {
+            if !cuts.contains_key(node) {
+                report(format!("isolate: the cut node \"{node}\" has no boundary"));
+            }
+        }
+        for cut in boundary {
+            if !inside.contains(cut.node.as_str()) {
+                report(format!("isolate: boundary \"{}\" is no node of the part", cut.node));
+            }
+            let lengths = [cut.values.len(), cut.t_k.len()];
+            if cut.times_s.is_empty() || lengths.iter().any(|len| *len != cut.times_s.len()) {
+                report(format!("isolate: boundary \"{}\" needs as many values as times", cut.node));
+            }
+        }
+        if !problems.is_empty() {
+            return Err(Diagnostics(problems));
+        }
+        model.nodes.retain(|node| inside.contains(node.entry.id.as_str()));
+        model.references.retain(|reference| {
+            let node = reference.entry.node.as_str();
+            inside.contains(node) && !cuts.contains_key(node)
+        });
+        for node in &mut model.nodes {
+            if let Some(cut) = cuts.get(node.entry.id.as_str()) {
+                let first = cut.values[0];
+                node.entry.temperature_k = Some(cut.t_k[0]);
+                match cut.kind {
+                    CutKind::Pressure => {
+                        node.entry.kind = NodeEntryKind::PressureBoundary;
+                        node.entry.pressure_pa = Some(first);
+                    }
+                    CutKind::Flow => {
+                        node.entry.kind = NodeEntryKind::Source;
+                        node.entry.m_flow_kg_s = Some(first);
+                    }
+                }
+            }
+        }
+        let kept_edge = |id: &str| wanted.contains(id);
+        model.units.retain(|unit| kept_edge(&unit.port));
+        model.interfaces.retain(|interface| {
+            kept_edge(&interface.edge) && interface.pump.as_deref().is_none_or(kept_edge)
+        });
+        let kept: HashSet<String> = model
+            .edges
+            .iter()
+            .map(|edge| edge.id.clone())
+            .chain(model.nodes.iter().map(|node| node.entry.id.clone()))
+            .chain(model.units.iter().map(|unit| unit.id.clone()))
+            .chain(model.interfaces.iter().map(|interface| interface.id.clone()))
+            .chain(std::iter::once("ground".to_owned()))
+            .collect();
+        let component = |name: &str| name.rsplit_once('.').is_some_and(|(c, _)| kept.contains(c));
+        model.controllers.retain(|c| component(&c.measures) && component(&c.acts_on));
+        let set_points: HashSet<String> =
+            model.controllers.iter().map(|c| format!("{}.set_point", c.id)).collect();
+        model
+            .drivers
+            .retain(|driver| component(&driver.signal) || set_points.contains(&driver.signal));
+        for cut in boundary {
+            let quantity = match cut.kind {
+                CutKind::Pressure => "pressure_pa",
+                CutKind::Flow => "m_flow_kg_s",
+            };
+            for (quantity, values) in [(quantity, &cut.values), ("temperature_k", &cut.t_k)] {
+                model.drivers.push(DriverSpec {
+                    signal: format!("{}.{quantity}", cut.node),
+                    unit: None,
+                    interpolation: Interpolation::Linear,
+                    times_s: cut.times_s.clone(),
+                    values: values.clone(),
+                    source: format!("isolate at \"{}\"", cut.node),
+                    place: Place::default(),
+                });
+            }
+        }
+        Ok(model)
+    }
+}

@@ -1,0 +1,207 @@
+//! A model: plain nodes and edges, units, controllers and drivers by name, typed and in SI.
+//!
+//! This is what a model file becomes after composites are expanded, what overlays change and
+//! `isolate` cuts, and what `build` turns into a simulation.
+
+use crate::diagnostic::Diagnostics;
+use crate::model_file::{Interpolation, NodeEntry, PressureReferenceEntry, RunEntry};
+use anergy_control::controllers::ControllerParams;
+use anergy_core::medium::Medium;
+use anergy_network::elements::ElementParams;
+use anergy_prosumer::equipment::EquipmentParams;
+use std::ops::Range;
+use std::path::Path;
+
+/// Where an entry and its fields stand in the model text.
+#[derive(Debug, Clone, Default)]
+pub struct Place {
+    /// The whole entry.
+    pub span: Option<Range<usize>>,
+    /// The fields that were given: SI name and place of the value.
+    pub fields: Vec<(String, Option<Range<usize>>)>,
+}
+
+/// Two entries are the same wherever they stand.
+impl PartialEq for Place {
+    fn eq(&self, _other: &Self) -> bool {
+        true
+    }
+}
+
+impl Place {
+    /// The place of a field, or of the entry.
+    pub fn of(&self, field: &str) -> Option<Range<usize>> {
+        self.fields
+            .iter()
+            .find(|(name, _)| name == field)
+            .and_then(|(_, span)| span.clone())
+            .or_else(|| self.span.clone())
+    }
+
+    /// Whether a field was given.
+    pub fn has(&self, field: &str) -> bool {
+        self.fields.iter().any(|(name, _)| name == field)
+    }
+}
+
+/// A node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodeSpec {
+    /// Its fields.
+    pub entry: NodeEntry,
+    /// The site it belongs to; empty for others.
+    pub site: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// An edge.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeSpec {
+    /// Name.
+    pub id: String,
+    /// Node at port a.
+    pub from: String,
+    /// Node at port b.
+    pub to: String,
+    /// The component.
+    pub params: ElementParams,
+    /// Multiplies the pressure loss; 1 leaves the law alone.
+    pub loss_factor: f64,
+    /// The station it belongs to; empty for others.
+    pub station: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A thermal unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitSpec {
+    /// Name.
+    pub id: String,
+    /// The edge it is connected to.
+    pub port: String,
+    /// The unit.
+    pub params: EquipmentParams,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A hydraulic interface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InterfaceSpec {
+    /// Name.
+    pub id: String,
+    /// Edge whose flow from a to b is feed-in.
+    pub edge: String,
+    /// Pump that feeds in.
+    pub pump: Option<String>,
+    /// Flow that the pump means to deliver, m3/s.
+    pub requested_flow_m3_s: Option<f64>,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControllerSpec {
+    /// Name.
+    pub id: String,
+    /// Channel it measures.
+    pub measures: String,
+    /// Signal it drives.
+    pub acts_on: String,
+    /// The controller.
+    pub params: ControllerParams,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A signal driven over time by a schedule or a series.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriverSpec {
+    /// The signal.
+    pub signal: String,
+    /// Unit of the values; `None` is SI.
+    pub unit: Option<String>,
+    /// Between the points.
+    pub interpolation: Interpolation,
+    /// Times, s since the start.
+    pub times_s: Vec<f64>,
+    /// Values in `unit`.
+    pub values: Vec<f64>,
+    /// Where it comes from, for messages.
+    pub source: String,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A pressure reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceSpec {
+    /// Its fields.
+    pub entry: PressureReferenceEntry,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A whole model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// Title.
+    pub name: String,
+    /// The text it was read from.
+    pub text: String,
+    /// How to run it.
+    pub run: RunEntry,
+    /// The water.
+    pub medium: Medium,
+    /// Gravity, m/s2.
+    pub gravity_m_s2: f64,
+    /// Temperature around the pipes, K.
+    pub ground_k: f64,
+    /// Nodes.
+    pub nodes: Vec<NodeSpec>,
+    /// Edges.
+    pub edges: Vec<EdgeSpec>,
+    /// Thermal units.
+    pub units: Vec<UnitSpec>,
+    /// Hydraulic interfaces.
+    pub interfaces: Vec<InterfaceSpec>,
+    /// Controllers.
+    pub controllers: Vec<ControllerSpec>,
+    /// Schedules and series.
+    pub drivers: Vec<DriverSpec>,
+    /// Pressure references.
+    pub references: Vec<ReferenceSpec>,
+}
+
+impl Model {
+    /// Reads a model from TOML text; files it refers to are looked up in `dir`.
+    ///
+    /// # Errors
+    /// All problems of the text, with places and hints. Problems of the network it describes are
+    /// found by [`crate::build`].
+    pub fn from_toml(text: &str, dir: &Path) -> Result<Self, Diagnostics> {
+        let tree = crate::document::parse_toml(text)?;
+        crate::model_file::read::model(&tree, text, dir)
+    }
+
+    /// Reads a model from a JSON object with the same grammar.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`]; there are no places, names are given instead.
+    pub fn from_json(value: &serde_json::Value, dir: &Path) -> Result<Self, Diagnostics> {
+        let text = match value {
+            serde_json::Value::Object(map) => crate::document::to_toml(map)?,
+            _ => String::new(),
+        };
+        // Through the text, so that places and hints are those of the file the user could save.
+        Self::from_toml(&text, dir)
+    }
+
+    /// The edge with a name.
+    pub fn edge(&self, id: &str) -> Option<&EdgeSpec> {
+        self.edges.iter().find(|edge| edge.id == id)
+    }
+}

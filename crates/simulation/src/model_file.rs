@@ -1,0 +1,465 @@
+//! The entries of a model file, as their fields are written (in SI after conversion).
+//!
+//! Each struct is one section of the file; together with the registries of elements, units and
+//! controllers they make up the grammar that `anergy schema` prints.
+
+pub mod expand;
+pub mod read;
+pub mod schema;
+pub mod series;
+
+use anergy_core::clock::Time;
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::borrow::Cow;
+
+/// `[model]`: what the model is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelEntry {
+    /// Title of the study.
+    #[serde(default = "untitled")]
+    pub name: String,
+    /// Free text.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+    /// Gravity in m/s2.
+    #[serde(default = "gravity")]
+    pub gravity: f64,
+}
+
+fn untitled() -> String {
+    "untitled".into()
+}
+
+fn gravity() -> f64 {
+    anergy_network::graph::GRAVITY_M_S2
+}
+
+/// `[run]`: how long, how fine, from when.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RunEntry {
+    /// End of the run, for example "1h".
+    #[serde(default = "one_hour")]
+    pub until: Duration,
+    /// Largest time step, for example "1s".
+    #[serde(default = "one_second")]
+    pub step: Duration,
+    /// Time between recorded rows, for example "10s".
+    #[serde(default = "ten_seconds")]
+    pub record: Duration,
+    /// Calendar time of the start, RFC 3339; needed only with calendar data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<String>,
+    /// Temperature of all water at the start, K.
+    #[serde(default = "twenty_degc")]
+    pub initial_k: f64,
+}
+
+fn one_hour() -> Duration {
+    Duration(Time(3_600_000_000_000))
+}
+
+fn one_second() -> Duration {
+    Duration(Time(1_000_000_000))
+}
+
+fn ten_seconds() -> Duration {
+    Duration(Time(10_000_000_000))
+}
+
+fn twenty_degc() -> f64 {
+    293.15
+}
+
+/// `[fluid]`: the water.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FluidEntry {
+    /// Property set.
+    #[serde(default)]
+    pub kind: FluidKind,
+    /// Density, kg/m3.
+    #[serde(default = "density")]
+    pub density_kg_m3: f64,
+    /// Specific heat capacity, J/(kg K).
+    #[serde(default = "heat_capacity")]
+    pub heat_capacity_j_kg_k: f64,
+    /// Dynamic viscosity, Pa s.
+    #[serde(default = "viscosity")]
+    pub viscosity_pa_s: f64,
+    /// Thermal conductivity, W/(m K).
+    #[serde(default = "conductivity")]
+    pub conductivity_w_m_k: f64,
+}
+
+/// Property sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FluidKind {
+    /// Constant properties: exact energy conservation.
+    #[default]
+    ConstantWater,
+}
+
+fn density() -> f64 {
+    anergy_core::medium::Medium::default().density_kg_m3
+}
+
+fn heat_capacity() -> f64 {
+    anergy_core::medium::Medium::default().heat_capacity_j_kg_k
+}
+
+fn viscosity() -> f64 {
+    anergy_core::medium::Medium::default().viscosity_pa_s
+}
+
+fn conductivity() -> f64 {
+    anergy_core::medium::Medium::default().conductivity_w_m_k
+}
+
+/// `[ground]`: what surrounds the pipes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GroundEntry {
+    /// Temperature, K; also the signal `ground.temperature_k`.
+    #[serde(default = "twelve_degc")]
+    pub temperature_k: f64,
+}
+
+fn twelve_degc() -> f64 {
+    285.15
+}
+
+/// `[[site]]`: a place with a node on each line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SiteEntry {
+    /// Name of the place.
+    pub id: String,
+    /// Elevation, m.
+    #[serde(default)]
+    pub elevation_m: f64,
+    /// Names of its lines, the hot one first: a node `id.line` each.
+    #[serde(default = "two_lines")]
+    pub lines: Vec<String>,
+    /// Position on the map, m east.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_m: Option<f64>,
+    /// Position on the map, m north.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_m: Option<f64>,
+}
+
+fn two_lines() -> Vec<String> {
+    vec!["hot".into(), "cold".into()]
+}
+
+/// `[[station]]`: a transfer station between the lines of a site. The parts take the fields of their
+/// elements; what is not given has the published value of the laboratory's station.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StationEntry {
+    /// The site it stands at.
+    pub site: String,
+    /// What it can do.
+    pub kind: StationKind,
+    /// Name within its site; another name than "station" also prefixes its parts.
+    #[serde(default = "station_name")]
+    pub name: String,
+    /// Flow that its pump means to deliver, m3/s; decides the `blocked` flag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requested_flow_m3_s: Option<f64>,
+    /// Both house connection pipes, each: fields of a pipe, or `pipe` for a named type.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub stub: serde_json::Value,
+    /// The heat exchanger: fields of a heat_exchanger.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub heat_exchanger: serde_json::Value,
+    /// The feed-in pump: fields of a pump.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub feed_in_pump: serde_json::Value,
+    /// The check valve behind the pump: fields of a check_valve.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub feed_in_check_valve: serde_json::Value,
+    /// The extraction valve: fields of a valve.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub extraction_valve: serde_json::Value,
+}
+
+fn is_null(value: &serde_json::Value) -> bool {
+    value.is_null()
+}
+
+fn station_name() -> String {
+    "station".into()
+}
+
+/// What a station can do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StationKind {
+    /// Feed in with a pump and extract with a valve, through one heat exchanger.
+    Bidirectional,
+    /// Extract with a valve through a heat exchanger.
+    Consumer,
+    /// Feed in with a pump through a heat exchanger.
+    Producer,
+    /// The flow is what the unit asks for; its water is grid water.
+    PrescribedFlow,
+}
+
+/// `[[interface]]`: what a station is in a model written as plain nodes and edges.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InterfaceEntry {
+    /// Name, for example "sf1.station".
+    pub id: String,
+    /// Edge whose flow from a to b is the station's feed-in.
+    pub edge: String,
+    /// Pump that feeds in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pump: Option<String>,
+    /// Flow that the pump means to deliver, m3/s; decides the `blocked` flag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requested_flow_m3_s: Option<f64>,
+}
+
+/// `[[node]]`: a plain node.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NodeEntry {
+    /// Name.
+    pub id: String,
+    /// What is known at it.
+    #[serde(default)]
+    pub kind: NodeEntryKind,
+    /// Elevation, m.
+    #[serde(default)]
+    pub elevation_m: f64,
+    /// Mixed water volume, m3.
+    #[serde(default)]
+    pub volume_m3: f64,
+    /// Given pressure, Pa (pressure_boundary).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_pa: Option<f64>,
+    /// Flow into the network, kg/s; negative takes water out (source).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub m_flow_kg_s: Option<f64>,
+    /// Temperature of entering water, K (pressure_boundary, source).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature_k: Option<f64>,
+    /// Position on the map, m east.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_m: Option<f64>,
+    /// Position on the map, m north.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_m: Option<f64>,
+}
+
+/// What is known at a plain node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NodeEntryKind {
+    /// Nothing.
+    #[default]
+    Junction,
+    /// The pressure; water enters or leaves.
+    PressureBoundary,
+    /// The flow that enters or leaves.
+    Source,
+}
+
+/// `[pressure_reference]` (or several as `[[pressure_reference]]`): pressure holding of a circuit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PressureReferenceEntry {
+    /// The node.
+    pub node: String,
+    /// Its pressure above the atmosphere, Pa.
+    #[serde(default = "holding_pressure")]
+    pub pressure_pa: f64,
+}
+
+fn holding_pressure() -> f64 {
+    1.5e5
+}
+
+/// How a signal runs between its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// The value of a point holds until the next one.
+    #[default]
+    Hold,
+    /// Straight lines.
+    Linear,
+}
+
+/// `[[schedule]]`: a signal over time, in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScheduleEntry {
+    /// The signal it drives.
+    pub signal: String,
+    /// Unit of the values, for example "percent" or "degC". Absent: SI.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Between the points.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+    /// Pairs of time in s and value.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// `[[series]]`: a signal over time, from a column of a CSV file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SeriesEntry {
+    /// The file, relative to the model file.
+    pub file: String,
+    /// The column.
+    pub column: String,
+    /// The signal it drives.
+    pub signal: String,
+    /// Unit of the values. Absent: SI.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Between the rows.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+    /// The column with the time: s since the start, or RFC 3339 with `[run] start`. Absent: the first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_column: Option<String>,
+    /// Field separator.
+    #[serde(default = "comma")]
+    pub separator: char,
+}
+
+fn comma() -> char {
+    ','
+}
+
+/// A span of time as people write it: "1h", "90 s", "1d 12h", or a number of seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Duration(pub Time);
+
+impl Duration {
+    /// Parses "1h 30min"; a bare number is seconds.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let hint = "write for example \"10s\", \"15min\", \"1h\" or \"1d 12h\"";
+        let compact: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+        if compact == "auto" {
+            return Err(
+                "the automatic step is not available yet; give a step such as \"1s\"".into()
+            );
+        }
+        if let Ok(seconds) = compact.parse::<f64>() {
+            return Self::from_s(seconds);
+        }
+        let mut rest = compact.as_str();
+        let mut total = 0.0;
+        while !rest.is_empty() {
+            let number_end = rest
+                .find(|c: char| !c.is_ascii_digit() && c != '.')
+                .ok_or_else(|| format!("\"{text}\" has a number without unit; {hint}"))?;
+            let value: f64 = rest[..number_end]
+                .parse()
+                .map_err(|_| format!("\"{text}\" is not a duration; {hint}"))?;
+            rest = &rest[number_end..];
+            let unit_end =
+                rest.find(|c: char| c.is_ascii_digit() || c == '.').unwrap_or(rest.len());
+            total += value
+                * match &rest[..unit_end] {
+                    "ms" => 1e-3,
+                    "s" => 1.0,
+                    "m" | "min" => 60.0,
+                    "h" => 3600.0,
+                    "d" => 86_400.0,
+                    "w" => 604_800.0,
+                    "a" | "y" => 31_536_000.0,
+                    other => {
+                        return Err(format!("\"{text}\" has the unknown unit \"{other}\"; {hint}"));
+                    }
+                };
+            rest = &rest[unit_end..];
+        }
+        Self::from_s(total)
+    }
+
+    fn from_s(seconds: f64) -> Result<Self, String> {
+        match Time::from_s(seconds) {
+            Some(time) if time > Time::ZERO => Ok(Self(time)),
+            _ => Err(format!("a duration must be positive, not {seconds} s")),
+        }
+    }
+}
+
+impl Serialize for Duration {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&self.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for Duration {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl de::Visitor<'_> for Visitor {
+            type Value = Duration;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a duration such as \"10s\" or a number of seconds")
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Duration, E> {
+                Duration::parse(text).map_err(E::custom)
+            }
+            fn visit_f64<E: de::Error>(self, seconds: f64) -> Result<Duration, E> {
+                Duration::from_s(seconds).map_err(E::custom)
+            }
+            fn visit_u64<E: de::Error>(self, seconds: u64) -> Result<Duration, E> {
+                self.visit_f64(seconds as f64)
+            }
+            fn visit_i64<E: de::Error>(self, seconds: i64) -> Result<Duration, E> {
+                self.visit_f64(seconds as f64)
+            }
+        }
+        deserializer.deserialize_any(Visitor)
+    }
+}
+
+impl JsonSchema for Duration {
+    fn schema_name() -> Cow<'static, str> {
+        "Duration".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "type": ["string", "number"],
+            "examples": ["10s", "15min", "1h", "1d 12h", 3600]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations() {
+        let s = |text: &str| Duration::parse(text).map(|duration| duration.0.as_s());
+        assert_eq!(s("1h 30min"), Ok(5400.0));
+        assert_eq!(s("250ms"), Ok(0.25));
+        assert_eq!(s("1d"), Ok(86_400.0));
+        assert_eq!(s("0.5"), Ok(0.5));
+        for wrong in ["", "abc", "1x", "-1s", "0s", "1h30", "auto", "1e400"] {
+            assert!(s(wrong).is_err(), "{wrong}");
+        }
+    }
+}

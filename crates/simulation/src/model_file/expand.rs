@@ -1,0 +1,255 @@
+//! Composites become plain nodes and edges: sites, trenches, stations.
+//!
+//! A trench gives a pipe per line that its two sites share. A station gives its published hydraulics
+//! between the hot and the cold node of its site:
+//!
+//! ```text
+//! hot --stub_hot-- exchanger_hot --heat_exchanger-- exchanger_cold --+-- extraction_valve --+
+//!                                                                    |                      |
+//!                                          feed_in_check_valve -- pump_outlet -- feed_in_pump
+//!                                                                                           |
+//! cold --------------------------------------stub_cold------------------------------ branch_cold
+//! ```
+//! `stub_hot`, `heat_exchanger`, `feed_in_pump` and `feed_in_check_valve` have port a towards the cold
+//! side (positive flow is feed-in), `extraction_valve` and `stub_cold` towards the hot side.
+
+use super::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
+use crate::document::{Key, Tree, TreeKind};
+use serde_json::{Value, json};
+use std::ops::Range;
+
+/// A node or edge to be read, and what it belongs to.
+#[derive(Debug, Clone)]
+pub(super) struct Plain {
+    /// The entry as a table.
+    pub tree: Tree,
+    /// Its site (nodes) or station (edges); empty for none.
+    pub owner: String,
+}
+
+/// The nodes of a site.
+pub(super) fn site_nodes(site: &SiteEntry, span: Option<&Range<usize>>) -> Vec<Plain> {
+    site.lines
+        .iter()
+        .map(|line| {
+            let mut entries = vec![
+                ("id", json!(format!("{}.{line}", site.id))),
+                ("elevation_m", json!(site.elevation_m)),
+            ];
+            entries.extend(site.x_m.map(|x| ("x_m", json!(x))));
+            entries.extend(site.y_m.map(|y| ("y_m", json!(y))));
+            Plain { tree: Tree::table(span.cloned(), entries), owner: site.id.clone() }
+        })
+        .collect()
+}
+
+/// The pipes of a trench; `fields` are those of a pipe, with their places.
+pub(super) fn trench_pipes(
+    id: &str,
+    (from, to): (&SiteEntry, &SiteEntry),
+    fields: &Tree,
+) -> Vec<Plain> {
+    from.lines
+        .iter()
+        .filter(|line| to.lines.contains(line))
+        .map(|line| {
+            let mut tree = Tree::table(
+                fields.span.clone(),
+                vec![
+                    ("id", json!(format!("{id}.{line}"))),
+                    ("kind", json!("pipe")),
+                    ("from", json!(format!("{}.{line}", from.id))),
+                    ("to", json!(format!("{}.{line}", to.id))),
+                ],
+            );
+            tree.fill_from(fields);
+            Plain { tree, owner: String::new() }
+        })
+        .collect()
+}
+
+/// A part of a station: its name, kind, ends and the defaults of the published station.
+struct Part {
+    name: &'static str,
+    kind: &'static str,
+    fields: &'static str,
+    ends: (String, String),
+    defaults: Value,
+}
+
+/// The nodes, edges and interface of a station; `tree` is its entry, with places.
+pub(super) fn station(
+    station: &StationEntry,
+    site: &SiteEntry,
+    tree: &Tree,
+) -> (Vec<Plain>, Vec<Plain>, InterfaceEntry) {
+    let id = format!("{}.{}", site.id, station.name);
+    let prefix = if station.name == "station" { site.id.clone() } else { id.clone() };
+    let inner = |name: &str| format!("{prefix}.{name}");
+    let hot = format!("{}.{}", site.id, site.lines[0]);
+    let cold = format!("{}.{}", site.id, site.lines[1]);
+    let (feeds_in, extracts) = match station.kind {
+        StationKind::Bidirectional => (true, true),
+        StationKind::Consumer => (false, true),
+        StationKind::Producer => (true, false),
+        StationKind::PrescribedFlow => (false, false),
+    };
+    let mut parts = Vec::new();
+    let mut inner_nodes = Vec::new();
+    if station.kind == StationKind::PrescribedFlow {
+        parts.push(Part {
+            name: "flow_source",
+            kind: "flow_source",
+            fields: "",
+            ends: (cold, hot),
+            defaults: json!({}),
+        });
+    } else {
+        inner_nodes.extend(["exchanger_hot", "exchanger_cold", "branch_cold"]);
+        let stub = json!({
+            "length_m": 5.0, "inner_diameter_mm": 22.0, "roughness_mm": 0.011, "zeta": 1.75,
+            "insulation_resistance_k_m_w": 3.78
+        });
+        parts.push(Part {
+            name: "stub_hot",
+            kind: "pipe",
+            fields: "stub",
+            ends: (inner("exchanger_hot"), hot),
+            defaults: stub.clone(),
+        });
+        parts.push(Part {
+            name: "heat_exchanger",
+            kind: "heat_exchanger",
+            fields: "heat_exchanger",
+            ends: (inner("exchanger_cold"), inner("exchanger_hot")),
+            defaults: json!({}),
+        });
+        if feeds_in {
+            inner_nodes.push("pump_outlet");
+            parts.push(Part {
+                name: "feed_in_pump",
+                kind: "pump",
+                fields: "feed_in_pump",
+                ends: (inner("branch_cold"), inner("pump_outlet")),
+                defaults: if has_own_curve(tree) {
+                    json!({})
+                } else {
+                    json!({ "head_max_hpa": 402.21, "free_flow_l_min": 55.33 })
+                },
+            });
+            parts.push(Part {
+                name: "feed_in_check_valve",
+                kind: "check_valve",
+                fields: "feed_in_check_valve",
+                ends: (inner("pump_outlet"), inner("exchanger_cold")),
+                defaults: json!({ "kvs_m3_h": 11.0, "leakage": 1e-3 }),
+            });
+        }
+        if extracts {
+            let commanded = ["opening", "kappa"]
+                .iter()
+                .any(|name| tree.get("extraction_valve").is_some_and(|v| v.get(name).is_some()));
+            let by_kappa =
+                tree.get("extraction_valve").and_then(|v| v.text("command")) == Some("kappa");
+            let mut defaults = json!({ "kvs_m3_h": 2.5, "leakage": 2e-3 });
+            if !commanded {
+                // A feeder's extraction valve is closed until it is told otherwise.
+                let start = if feeds_in { 0.0 } else { 1.0 };
+                defaults[if by_kappa { "kappa" } else { "opening" }] = json!(start);
+            }
+            parts.push(Part {
+                name: "extraction_valve",
+                kind: "valve",
+                fields: "extraction_valve",
+                ends: (inner("exchanger_cold"), inner("branch_cold")),
+                defaults,
+            });
+        }
+        parts.push(Part {
+            name: "stub_cold",
+            kind: "pipe",
+            fields: "stub",
+            ends: (inner("branch_cold"), cold),
+            defaults: stub,
+        });
+    }
+    let nodes = inner_nodes
+        .iter()
+        .map(|name| Plain {
+            tree: Tree::table(
+                tree.span.clone(),
+                vec![("id", json!(inner(name))), ("elevation_m", json!(site.elevation_m))],
+            ),
+            owner: site.id.clone(),
+        })
+        .collect();
+    let edges = parts
+        .iter()
+        .map(|part| Plain { tree: part.tree(tree, &prefix), owner: id.clone() })
+        .collect();
+    let interface = InterfaceEntry {
+        id,
+        edge: inner(if parts.len() == 1 { "flow_source" } else { "heat_exchanger" }),
+        pump: feeds_in.then(|| inner("feed_in_pump")),
+        requested_flow_m3_s: station.requested_flow_m3_s,
+    };
+    (nodes, edges, interface)
+}
+
+/// Whether the station's pump brings its own curve, so that the published one is not its default.
+fn has_own_curve(tree: &Tree) -> bool {
+    tree.get("feed_in_pump").is_some_and(|pump| {
+        pump.entries().iter().any(|(key, _)| {
+            ["head_max_", "free_flow_", "curve_"].iter().any(|start| key.name.starts_with(start))
+        })
+    })
+}
+
+impl Part {
+    /// The part as an edge entry: what the station's entry says, then the defaults.
+    fn tree(&self, station: &Tree, prefix: &str) -> Tree {
+        let mut tree = Tree::table(
+            station.span.clone(),
+            vec![
+                ("id", json!(format!("{prefix}.{}", self.name))),
+                ("kind", json!(self.kind)),
+                ("from", json!(self.ends.0)),
+                ("to", json!(self.ends.1)),
+            ],
+        );
+        let own = station.get(self.fields);
+        if let Some(own) = own {
+            match own.kind {
+                TreeKind::Table(_) => tree.fill_from(own),
+                // Not a table: let the edge's reader say so at the right place.
+                _ => {
+                    let key = Key { name: self.fields.to_owned(), span: own.span.clone() };
+                    if let TreeKind::Table(entries) = &mut tree.kind {
+                        entries.push((key, own.clone()));
+                    }
+                }
+            }
+        }
+        let defaults = Tree::from_json(&self.defaults, station.span.as_ref());
+        fill_quantities(&mut tree, &defaults, own.is_some_and(|own| own.get("pipe").is_some()));
+        tree
+    }
+}
+
+/// Adds defaults for quantities that are not given in any unit. With a named pipe type only the length
+/// and the fittings of the published stub remain.
+fn fill_quantities(tree: &mut Tree, defaults: &Tree, typed: bool) {
+    let stem = |name: &str| {
+        anergy_core::units::split_suffix(name).map_or(name.to_owned(), |(stem, _)| stem.to_owned())
+    };
+    let given: Vec<String> = tree.entries().iter().map(|(key, _)| stem(&key.name)).collect();
+    if let TreeKind::Table(entries) = &mut tree.kind {
+        for (key, value) in defaults.entries() {
+            let quantity = stem(&key.name);
+            let kept = !typed || quantity == "length" || quantity == "zeta";
+            if kept && !given.contains(&quantity) {
+                entries.push((key.clone(), value.clone()));
+            }
+        }
+    }
+}

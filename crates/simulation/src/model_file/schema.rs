@@ -1,0 +1,203 @@
+//! The JSON Schema of the model file, assembled from the entries and the registries.
+
+use super::*;
+use anergy_control::controllers::ControllerParams;
+use anergy_core::units::alternatives;
+use anergy_network::elements::ElementParams;
+use anergy_network::elements::pipe::PipeParams;
+use anergy_prosumer::equipment::EquipmentParams;
+use schemars::{Schema, schema_for};
+use serde_json::{Map, Value, json};
+
+/// The JSON Schema (2020-12) of a model file, with every unit a field can be written in.
+pub fn schema() -> Value {
+    let list = |items: Value| json!({ "type": "array", "items": items });
+    let text = |description: &str| json!({ "type": "string", "description": description });
+    let edge_ends = [
+        ("id", text("Name of the edge")),
+        ("from", text("Node at port a")),
+        ("to", text("Node at port b")),
+    ];
+    let trench = {
+        let own = [
+            ("id", text("Name; default from-to")),
+            ("from", text("Site at port a")),
+            ("to", text("Site at port b")),
+            ("pipe", text("Name of a pipe_type")),
+        ];
+        let mut trench = entry(&schema_for!(PipeParams), &own);
+        trench["required"] = json!(["from", "to"]);
+        trench
+    };
+    let mut pipe_type = entry(&schema_for!(PipeParams), &[]);
+    if let Some(object) = pipe_type.as_object_mut() {
+        object.remove("required");
+    }
+    let station = station_schema();
+    let reference = entry(&schema_for!(PressureReferenceEntry), &[]);
+    let properties = json!({
+        "format": { "const": 1, "description": "Version of the file format" },
+        "model": entry(&schema_for!(ModelEntry), &[]),
+        "run": entry(&schema_for!(RunEntry), &[]),
+        "fluid": entry(&schema_for!(FluidEntry), &[]),
+        "ground": entry(&schema_for!(GroundEntry), &[]),
+        "pipe_type": { "type": "object", "additionalProperties": pipe_type },
+        "site": list(entry(&schema_for!(SiteEntry), &[])),
+        "trench": list(trench),
+        "station": list(station),
+        "node": list(entry(&schema_for!(NodeEntry), &[])),
+        "edge": list(kinds(ElementParams::KINDS, ElementParams::schema, &edge_ends, &["id", "from", "to"])),
+        "interface": list(entry(&schema_for!(InterfaceEntry), &[])),
+        "unit": list(kinds(
+            EquipmentParams::KINDS,
+            EquipmentParams::schema,
+            &[
+                ("site", text("Site whose station it stands behind")),
+                ("name", text("Name within its site; default unit")),
+                ("station", text("Name of the station; default station")),
+                ("id", text("Name, where no site is given")),
+                ("port", text("Edge it stands on, where no site is given")),
+            ],
+            &[],
+        )),
+        "controller": list(kinds(
+            ControllerParams::KINDS,
+            ControllerParams::schema,
+            &[
+                ("id", text("Name; default acts_on.controller")),
+                ("measures", text("Channel it measures")),
+                ("acts_on", text("Signal it drives")),
+            ],
+            &["measures", "acts_on"],
+        )),
+        "schedule": list(entry(&schema_for!(ScheduleEntry), &[])),
+        "series": list(entry(&schema_for!(SeriesEntry), &[])),
+        "pressure_reference": { "oneOf": [reference.clone(), list(reference)] },
+    });
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "anergy model file",
+        "type": "object",
+        "properties": properties,
+        "required": ["format"],
+        "additionalProperties": false,
+    })
+}
+
+fn station_schema() -> Value {
+    let part = |kind: &str| {
+        let mut part = ElementParams::schema(kind).map_or(json!({}), |schema| entry(&schema, &[]));
+        if let Some(object) = part.as_object_mut() {
+            object.remove("required");
+        }
+        part
+    };
+    let mut stub = part("pipe");
+    stub["properties"]["pipe"] = json!({ "type": "string", "description": "Name of a pipe_type" });
+    let mut station = entry(&schema_for!(StationEntry), &[]);
+    for (field, schema) in [
+        ("stub", stub),
+        ("heat_exchanger", part("heat_exchanger")),
+        ("feed_in_pump", part("pump")),
+        ("feed_in_check_valve", part("check_valve")),
+        ("extraction_valve", part("valve")),
+    ] {
+        station["properties"][field] = schema;
+    }
+    station
+}
+
+/// One schema per kind, chosen by the word of `kind`.
+fn kinds(
+    words: &[&str],
+    schema: impl Fn(&str) -> Option<Schema>,
+    own: &[(&str, Value)],
+    required: &[&str],
+) -> Value {
+    let variants: Vec<Value> = words
+        .iter()
+        .filter_map(|word| {
+            let mut own = own.to_vec();
+            own.insert(0, ("kind", json!({ "const": word })));
+            if *word == "pipe" {
+                own.push((
+                    "pipe",
+                    json!({ "type": "string", "description": "Name of a pipe_type" }),
+                ));
+            }
+            let mut variant = entry(&schema(word)?, &own);
+            let mut all: Vec<Value> = vec![json!("kind")];
+            all.extend(required.iter().map(|name| json!(name)));
+            // A pipe may take its dimensions from a type; fields with units have alternatives.
+            variant["required"] = Value::Array(all);
+            Some(variant)
+        })
+        .collect();
+    json!({ "oneOf": variants })
+}
+
+/// An entry's schema: local definitions resolved, own fields first, all units of every field.
+fn entry(schema: &Schema, own: &[(&str, Value)]) -> Value {
+    let mut value = schema.as_value().clone();
+    let definitions = value.get("$defs").cloned().unwrap_or(Value::Null);
+    resolve(&mut value, &definitions);
+    let Some(object) = value.as_object_mut() else { return value };
+    object.remove("$defs");
+    object.remove("$schema");
+    object.remove("title");
+    let mut properties: Map<String, Value> =
+        own.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
+    let known = object.get("properties").and_then(Value::as_object).cloned().unwrap_or_default();
+    let mut required: Vec<Value> = Vec::new();
+    for (name, property) in &known {
+        properties.insert(name.clone(), property.clone());
+        for (alternative, unit) in alternatives(name) {
+            let mut converted = property.clone();
+            if let Some(object) = converted.as_object_mut() {
+                object.remove("default");
+                object.insert(
+                    "description".into(),
+                    json!(format!("{name} in {}", unit.suffix.replace('_', "/"))),
+                );
+            }
+            properties.insert(alternative, converted);
+        }
+        let needed = object
+            .get("required")
+            .and_then(Value::as_array)
+            .is_some_and(|all| all.iter().any(|required| required == name));
+        if needed && alternatives(name).next().is_none() {
+            required.push(json!(name));
+        }
+    }
+    object.insert("properties".into(), Value::Object(properties));
+    object.insert("required".into(), Value::Array(required));
+    object.insert("additionalProperties".into(), json!(false));
+    value
+}
+
+/// Replaces references to local definitions by the definitions.
+fn resolve(value: &mut Value, definitions: &Value) {
+    match value {
+        Value::Object(object) => {
+            let target = object
+                .get("$ref")
+                .and_then(Value::as_str)
+                .and_then(|path| path.strip_prefix("#/$defs/"))
+                .and_then(|name| definitions.get(name))
+                .cloned();
+            if let Some(Value::Object(mut target)) = target {
+                object.remove("$ref");
+                for (key, value) in std::mem::take(object) {
+                    target.insert(key, value);
+                }
+                *object = target;
+            }
+            for child in object.values_mut() {
+                resolve(child, definitions);
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| resolve(item, definitions)),
+        _ => {}
+    }
+}

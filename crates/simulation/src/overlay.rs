@@ -1,0 +1,255 @@
+//! Changes of a typed model: what effects, sweeps and studies are made of.
+//!
+//! An overlay names a component and what to change; its neutral value leaves the model identical.
+
+use crate::model::{EdgeSpec, Model, Place};
+use anergy_network::elements::ElementParams;
+use anergy_prosumer::equipment::EquipmentParams;
+use serde_json::Value;
+use thiserror::Error;
+
+/// One change of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// Sets a parameter (SI) of a component: `sf1-sf2.hot.length_m`.
+    Set {
+        /// Component and field.
+        parameter: String,
+        /// New value.
+        value: Value,
+    },
+    /// Multiplies a numeric parameter; 1 is neutral.
+    Scale {
+        /// Component and field.
+        parameter: String,
+        /// Factor.
+        factor: f64,
+    },
+    /// Adds an edge between existing nodes (in parallel to what is there).
+    InsertEdge {
+        /// Name of the new edge.
+        id: String,
+        /// Node at port a.
+        from: String,
+        /// Node at port b.
+        to: String,
+        /// The component.
+        params: ElementParams,
+    },
+    /// Puts a new edge in series before port b of an edge, with a new node between them.
+    InsertInSeries {
+        /// The edge.
+        edge: String,
+        /// Name of the new edge; the new node is called `id.inner`.
+        id: String,
+        /// The component.
+        params: ElementParams,
+    },
+    /// Replaces the component of an edge; its own parameters are neutral.
+    ReplaceElement {
+        /// The edge.
+        edge: String,
+        /// The new component.
+        params: ElementParams,
+    },
+    /// Multiplies the pressure loss of an edge at every flow; 1 is neutral.
+    WrapLaw {
+        /// The edge.
+        edge: String,
+        /// Factor, positive.
+        loss_factor: f64,
+    },
+}
+
+/// A change that cannot be made.
+#[derive(Debug, Error, Clone, PartialEq)]
+pub enum OverlayError {
+    /// No component, or no field, of that name.
+    #[error("overlay: there is no parameter \"{parameter}\"")]
+    UnknownParameter {
+        /// What was named.
+        parameter: String,
+    },
+    /// No edge of that name.
+    #[error("overlay: there is no edge \"{edge}\"")]
+    UnknownEdge {
+        /// What was named.
+        edge: String,
+    },
+    /// The component does not take the value.
+    #[error("overlay: {parameter}: {reason}")]
+    Value {
+        /// Component and field.
+        parameter: String,
+        /// Why not.
+        reason: String,
+    },
+    /// The name of a new component is taken.
+    #[error("overlay: \"{id}\" exists already")]
+    Taken {
+        /// The name.
+        id: String,
+    },
+}
+
+impl Model {
+    /// The model with changes made one after the other.
+    ///
+    /// # Errors
+    /// [`OverlayError`] names the change that cannot be made.
+    pub fn with(&self, changes: &[Change]) -> Result<Self, OverlayError> {
+        let mut model = self.clone();
+        for change in changes {
+            model.apply(change)?;
+        }
+        Ok(model)
+    }
+
+    fn apply(&mut self, change: &Change) -> Result<(), OverlayError> {
+        match change {
+            Change::Set { parameter, value } => {
+                self.change_parameter(parameter, |_| Some(value.clone()))
+            }
+            Change::Scale { parameter, factor } => self.change_parameter(parameter, |old| {
+                old.as_f64().map(|old| Value::from(old * factor))
+            }),
+            Change::InsertEdge { id, from, to, params } => {
+                self.check_free(id)?;
+                self.edges.push(EdgeSpec {
+                    id: id.clone(),
+                    from: from.clone(),
+                    to: to.clone(),
+                    params: params.clone(),
+                    loss_factor: 1.0,
+                    station: String::new(),
+                    place: Place::default(),
+                });
+                Ok(())
+            }
+            Change::InsertInSeries { edge, id, params } => self.insert_in_series(edge, id, params),
+            Change::ReplaceElement { edge, params } => {
+                self.edge_mut(edge)?.params = params.clone();
+                Ok(())
+            }
+            Change::WrapLaw { edge, loss_factor } => {
+                if !loss_factor.is_finite() || *loss_factor <= 0.0 {
+                    return Err(OverlayError::Value {
+                        parameter: format!("{edge}.loss_factor"),
+                        reason: format!("{loss_factor} is not positive"),
+                    });
+                }
+                self.edge_mut(edge)?.loss_factor *= loss_factor;
+                Ok(())
+            }
+        }
+    }
+
+    fn edge_mut(&mut self, id: &str) -> Result<&mut EdgeSpec, OverlayError> {
+        self.edges
+            .iter_mut()
+            .find(|edge| edge.id == id)
+            .ok_or_else(|| OverlayError::UnknownEdge { edge: id.to_owned() })
+    }
+
+    fn check_free(&self, id: &str) -> Result<(), OverlayError> {
+        if self.edges.iter().any(|edge| edge.id == id) {
+            return Err(OverlayError::Taken { id: id.to_owned() });
+        }
+        Ok(())
+    }
+
+    fn insert_in_series(
+        &mut self,
+        edge: &str,
+        id: &str,
+        params: &ElementParams,
+    ) -> Result<(), OverlayError> {
+        self.check_free(id)?;
+        let spec = self.edge_mut(edge)?;
+        let inner = format!("{id}.inner");
+        let end = std::mem::replace(&mut spec.to, inner.clone());
+        let station = spec.station.clone();
+        let before = self.nodes.iter().find(|node| node.entry.id == end).cloned();
+        let Some(mut node) = before else {
+            return Err(OverlayError::UnknownParameter { parameter: end });
+        };
+        node.entry.id.clone_from(&inner);
+        node.entry.kind = crate::model_file::NodeEntryKind::Junction;
+        node.entry.volume_m3 = 0.0;
+        self.nodes.push(node);
+        self.edges.push(EdgeSpec {
+            id: id.to_owned(),
+            from: inner,
+            to: end,
+            params: params.clone(),
+            loss_factor: 1.0,
+            station,
+            place: Place::default(),
+        });
+        Ok(())
+    }
+
+    /// Changes a field of an edge, a unit, the ground or the initial temperature.
+    fn change_parameter(
+        &mut self,
+        parameter: &str,
+        new: impl Fn(&Value) -> Option<Value>,
+    ) -> Result<(), OverlayError> {
+        let unknown = || OverlayError::UnknownParameter { parameter: parameter.to_owned() };
+        let (component, field) = parameter.rsplit_once('.').ok_or_else(unknown)?;
+        if let Some(edge) = self.edges.iter_mut().find(|edge| edge.id == component) {
+            let schema = ElementParams::schema(edge.params.kind());
+            let value = changed(parameter, field, edge.params.to_value(), schema.as_ref(), new)?;
+            edge.params =
+                deserialized(parameter, ElementParams::deserialize(edge.params.kind(), value))?;
+            return Ok(());
+        }
+        if let Some(unit) = self.units.iter_mut().find(|unit| unit.id == component) {
+            let schema = EquipmentParams::schema(unit.params.kind());
+            let value = changed(parameter, field, unit.params.to_value(), schema.as_ref(), new)?;
+            unit.params =
+                deserialized(parameter, EquipmentParams::deserialize(unit.params.kind(), value))?;
+            return Ok(());
+        }
+        if parameter == "ground.temperature_k" {
+            let value = new(&Value::from(self.ground_k)).and_then(|value| value.as_f64());
+            self.ground_k = value.ok_or_else(unknown)?;
+            return Ok(());
+        }
+        Err(unknown())
+    }
+}
+
+/// The object with one field changed.
+fn changed(
+    parameter: &str,
+    field: &str,
+    mut object: Value,
+    schema: Option<&schemars::Schema>,
+    new: impl Fn(&Value) -> Option<Value>,
+) -> Result<Value, OverlayError> {
+    let known = schema.map(crate::fields::property_names).unwrap_or_default();
+    if !known.iter().any(|name| name == field) {
+        return Err(OverlayError::UnknownParameter { parameter: parameter.to_owned() });
+    }
+    let old = object.get(field).cloned().unwrap_or(Value::Null);
+    let value = new(&old).ok_or_else(|| OverlayError::Value {
+        parameter: parameter.to_owned(),
+        reason: format!("{old} is not a number that can be scaled"),
+    })?;
+    object[field] = value;
+    Ok(object)
+}
+
+fn deserialized<T>(
+    parameter: &str,
+    result: Option<Result<T, serde_json::Error>>,
+) -> Result<T, OverlayError> {
+    match result {
+        Some(Ok(params)) => Ok(params),
+        Some(Err(error)) => {
+            Err(OverlayError::Value { parameter: parameter.to_owned(), reason: error.to_string() })
+        }
+        None => Err(OverlayError::UnknownParameter { parameter: parameter.to_owned() }),
+    }
+}

@@ -1,0 +1,188 @@
+//! A model as plain entries (`anergy check --expand`) and the defaults it uses
+//! (`anergy check --explain-defaults`).
+
+use crate::diagnostic::Diagnostics;
+use crate::document::to_toml;
+use crate::model::{Model, Place};
+use serde_json::{Map, Value, json};
+
+impl Model {
+    /// The model as a file of plain nodes and edges, in SI: reads back as the same model.
+    ///
+    /// # Errors
+    /// When a value cannot be written as TOML.
+    pub fn to_plain_toml(&self) -> Result<String, Diagnostics> {
+        let mut file = Map::new();
+        file.insert("format".into(), json!(1));
+        file.insert("model".into(), json!({ "name": self.name, "gravity": self.gravity_m_s2 }));
+        file.insert("run".into(), without_nulls(json!(self.run)));
+        file.insert(
+            "fluid".into(),
+            json!({
+                "kind": "constant_water",
+                "density_kg_m3": self.medium.density_kg_m3,
+                "heat_capacity_j_kg_k": self.medium.heat_capacity_j_kg_k,
+                "viscosity_pa_s": self.medium.viscosity_pa_s,
+                "conductivity_w_m_k": self.medium.conductivity_w_m_k,
+            }),
+        );
+        file.insert("ground".into(), json!({ "temperature_k": self.ground_k }));
+        let mut section = |name: &str, entries: Vec<Value>| {
+            if !entries.is_empty() {
+                file.insert(name.into(), entries.into_iter().map(without_nulls).collect());
+            }
+        };
+        section(
+            "pressure_reference",
+            self.references.iter().map(|reference| json!(reference.entry)).collect(),
+        );
+        section("node", self.nodes.iter().map(|node| json!(node.entry)).collect());
+        section(
+            "edge",
+            self.edges
+                .iter()
+                .map(|edge| {
+                    let head = json!({
+                        "id": edge.id, "kind": edge.params.kind(), "from": edge.from, "to": edge.to
+                    });
+                    joined(head, edge.params.to_value())
+                })
+                .collect(),
+        );
+        section(
+            "interface",
+            self.interfaces
+                .iter()
+                .map(|interface| {
+                    json!({
+                        "id": interface.id,
+                        "edge": interface.edge,
+                        "pump": interface.pump,
+                        "requested_flow_m3_s": interface.requested_flow_m3_s,
+                    })
+                })
+                .collect(),
+        );
+        section(
+            "unit",
+            self.units
+                .iter()
+                .map(|unit| {
+                    let head =
+                        json!({ "id": unit.id, "kind": unit.params.kind(), "port": unit.port });
+                    joined(head, unit.params.to_value())
+                })
+                .collect(),
+        );
+        section(
+            "controller",
+            self.controllers
+                .iter()
+                .map(|controller| {
+                    let head = json!({
+                        "id": controller.id,
+                        "kind": controller.params.kind(),
+                        "measures": controller.measures,
+                        "acts_on": controller.acts_on,
+                    });
+                    joined(head, controller.params.to_value())
+                })
+                .collect(),
+        );
+        section(
+            "schedule",
+            self.drivers
+                .iter()
+                .map(|driver| {
+                    let points: Vec<(f64, f64)> =
+                        driver.times_s.iter().copied().zip(driver.values.iter().copied()).collect();
+                    json!({
+                        "signal": driver.signal,
+                        "unit": driver.unit,
+                        "interpolation": driver.interpolation,
+                        "points": points,
+                    })
+                })
+                .collect(),
+        );
+        to_toml(&file)
+    }
+
+    /// Every value that was not given: component, field, value and where it comes from.
+    pub fn defaults(&self) -> Vec<DefaultValue> {
+        let mut defaults = Vec::new();
+        for edge in &self.edges {
+            let schema = anergy_network::elements::ElementParams::schema(edge.params.kind());
+            collect(&mut defaults, &edge.id, &edge.params.to_value(), schema, &edge.place);
+        }
+        for unit in &self.units {
+            let schema = anergy_prosumer::equipment::EquipmentParams::schema(unit.params.kind());
+            collect(&mut defaults, &unit.id, &unit.params.to_value(), schema, &unit.place);
+        }
+        for controller in &self.controllers {
+            let params = &controller.params;
+            let schema = anergy_control::controllers::ControllerParams::schema(params.kind());
+            collect(&mut defaults, &controller.id, &params.to_value(), schema, &controller.place);
+        }
+        defaults
+    }
+}
+
+/// A value that the model file did not give.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DefaultValue {
+    /// The component.
+    pub component: String,
+    /// The field, in SI.
+    pub field: String,
+    /// Its value; `null` where it follows from something else.
+    pub value: Value,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// What the field means.
+    pub meaning: String,
+}
+
+fn collect(
+    defaults: &mut Vec<DefaultValue>,
+    component: &str,
+    values: &Value,
+    schema: Option<schemars::Schema>,
+    place: &Place,
+) {
+    let Some(schema) = schema else { return };
+    let properties = schema.get("properties").and_then(Value::as_object);
+    for (field, property) in properties.into_iter().flatten() {
+        // What a composite filled in stands at the place of the whole entry.
+        let given = place.fields.iter().find(|(name, _)| name == field);
+        let source = match given {
+            Some((_, span)) if span.is_some() && *span == place.span => {
+                "the published station of the laboratory"
+            }
+            Some(_) => continue,
+            None => "the component's default",
+        };
+        let meaning = property.get("description").and_then(Value::as_str).unwrap_or_default();
+        defaults.push(DefaultValue {
+            component: component.to_owned(),
+            field: field.clone(),
+            value: values.get(field).cloned().unwrap_or(Value::Null),
+            source,
+            meaning: meaning.to_owned(),
+        });
+    }
+}
+
+fn joined(mut head: Value, tail: Value) -> Value {
+    if let (Some(head), Value::Object(tail)) = (head.as_object_mut(), tail) {
+        head.extend(tail);
+    }
+    head
+}
+
+fn without_nulls(mut value: Value) -> Value {
+    if let Some(object) = value.as_object_mut() {
+        object.retain(|_, value| !value.is_null());
+    }
+    value
+}

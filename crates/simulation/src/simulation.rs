@@ -1,0 +1,657 @@
+//! A simulation: an immutable plan, a state that is plain data, and the step.
+
+use crate::channels::{self, Source};
+use crate::drivers::Driver;
+use crate::error::RunError;
+use anergy_control::controllers::LocalController;
+use anergy_core::clock::Time;
+use anergy_core::error::FactorError;
+use anergy_core::ids::{ChannelId, SignalId};
+use anergy_core::recorder::{Channel, Event, NetworkMap, Severity};
+use anergy_core::signal::{SignalTable, Signals};
+use anergy_network::elements::Element;
+use anergy_network::graph::{Network, NodeKind};
+use anergy_network::hydraulics::{HydraulicError, HydraulicReport, HydraulicSolver};
+use anergy_network::interface::{Station, StationState};
+use anergy_network::state::NetworkState;
+use anergy_network::transport::Transport;
+use anergy_prosumer::equipment::Equipment;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A unit with its places in the flat state.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedUnit {
+    pub name: String,
+    pub equipment: Equipment,
+    /// Port of the network.
+    pub port: usize,
+    /// The command of its edge, where its request is that edge's flow (and not its own circulation).
+    pub imposes_flow: Option<SignalId>,
+    pub inputs: Range<usize>,
+    pub state: Range<usize>,
+    pub outputs: Range<usize>,
+}
+
+/// A controller with its places in the flat state.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedController {
+    pub name: String,
+    pub controller: LocalController,
+    pub measures: Source,
+    pub set_point: SignalId,
+    pub acts_on: SignalId,
+    pub interval: Time,
+    pub state: Range<usize>,
+}
+
+/// What a boundary value of the network is driven by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NodeInputs {
+    pub node: usize,
+    pub p_pa: Option<SignalId>,
+    pub m_flow_kg_s: Option<SignalId>,
+    pub t_k: Option<SignalId>,
+}
+
+/// Everything that does not change during a run.
+#[derive(Debug)]
+pub struct Plan {
+    pub(crate) network: Network,
+    pub(crate) node_names: Vec<String>,
+    pub(crate) edge_names: Vec<String>,
+    pub(crate) station_names: Vec<String>,
+    pub(crate) stations: Vec<Station>,
+    pub(crate) units: Vec<PlannedUnit>,
+    pub(crate) controllers: Vec<PlannedController>,
+    pub(crate) drivers: Vec<Driver>,
+    pub(crate) signals: SignalTable,
+    /// Command signal of each edge.
+    pub(crate) commands: Vec<Option<SignalId>>,
+    pub(crate) node_inputs: Vec<NodeInputs>,
+    pub(crate) ground: SignalId,
+    /// Signal with the temperature around each edge.
+    pub(crate) surroundings: Vec<SignalId>,
+    pub(crate) initial: State,
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) sources: Vec<Source>,
+    pub(crate) map: NetworkMap,
+    pub(crate) model_name: String,
+    pub(crate) model_text: String,
+    pub(crate) start_unix_ns: i64,
+    pub(crate) step: Time,
+    pub(crate) record: Time,
+    pub(crate) until: Time,
+}
+
+impl Plan {
+    pub(crate) fn electric_w(&self, state: &NetworkState, edge: usize) -> f64 {
+        let edge_state = state.edge_state(&self.network, edge);
+        self.network.edges[edge]
+            .element
+            .electric_power_w(state.m_flow_kg_s[edge], &edge_state)
+            .unwrap_or(0.0)
+    }
+
+    pub(crate) fn total_electric_w(&self, state: &NetworkState) -> f64 {
+        (0..self.network.edges.len()).map(|edge| self.electric_w(state, edge)).sum()
+    }
+
+    pub(crate) fn total_units_w(&self, state: &NetworkState) -> f64 {
+        let cp = self.network.medium.heat_capacity_j_kg_k;
+        state.port_flows.iter().map(|f| f.m_flow_kg_s.abs() * cp * (f.t_out_k - f.t_in_k)).sum()
+    }
+
+    pub(crate) fn total_loss_w(&self, state: &NetworkState) -> f64 {
+        state.q_loss_w.iter().sum::<f64>() + state.q_loss_nodes_w
+    }
+
+    /// Largest time step.
+    pub fn step(&self) -> Time {
+        self.step
+    }
+
+    /// Time between recorded rows.
+    pub fn record_interval(&self) -> Time {
+        self.record
+    }
+
+    /// End of the run.
+    pub fn until(&self) -> Time {
+        self.until
+    }
+
+    /// The recorded channels.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// The input signals.
+    pub fn signals(&self) -> &SignalTable {
+        &self.signals
+    }
+
+    /// The network.
+    pub fn network(&self) -> &Network {
+        &self.network
+    }
+
+    /// Names of the nodes, in the order of their ids.
+    pub fn node_names(&self) -> &[String] {
+        &self.node_names
+    }
+
+    /// Names of the edges, in the order of their ids.
+    pub fn edge_names(&self) -> &[String] {
+        &self.edge_names
+    }
+}
+
+/// Everything that changes during a run: plain data. A clone, or its bytes, is a snapshot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    pub(crate) time: Time,
+    pub(crate) network: NetworkState,
+    pub(crate) signals: Vec<f64>,
+    /// Signals that the user has taken over from schedules and controllers.
+    pub(crate) taken_over: Vec<bool>,
+    pub(crate) unit_states: Vec<f64>,
+    pub(crate) unit_outputs: Vec<f64>,
+    pub(crate) stations: Vec<StationState>,
+    pub(crate) station_heat_j: Vec<f64>,
+    pub(crate) controller_states: Vec<f64>,
+    pub(crate) next_tick: Vec<Time>,
+    pub(crate) last_tick: Vec<Time>,
+    pub(crate) electric_j: f64,
+    pub(crate) units_j: f64,
+    pub(crate) loss_j: f64,
+    pub(crate) boundary_j: f64,
+    pub(crate) pump_hydraulic_j: f64,
+    pub(crate) dissipated_j: f64,
+    pub(crate) initial_stored_j: f64,
+    pub(crate) largest_mass_residual_kg_s: f64,
+    pub(crate) steps: u64,
+    pub(crate) solves: u64,
+    pub(crate) iterations: u64,
+}
+
+impl State {
+    /// The state as bytes.
+    ///
+    /// # Errors
+    /// [`RunError::Snapshot`] when it cannot be encoded.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, RunError> {
+        postcard::to_allocvec(self)
+            .map_err(|error| RunError::Snapshot { problem: error.to_string() })
+    }
+}
+
+/// A simulation that can be stepped.
+pub struct Simulation {
+    plan: Arc<Plan>,
+    state: State,
+    solver: HydraulicSolver,
+    transport: Transport,
+    /// Events since they were last taken.
+    events: Vec<Event>,
+    wanted: Vec<anergy_core::port::PortRequest>,
+}
+
+impl Simulation {
+    /// A simulation at the start of its run.
+    ///
+    /// # Errors
+    /// When the hydraulics at the start cannot be solved.
+    pub fn new(plan: Arc<Plan>) -> Result<Self, RunError> {
+        let singular = |source: FactorError| RunError::Singular { time: "start".into(), source };
+        let solver = HydraulicSolver::new(&plan.network)
+            .map_err(|error| named(&plan, Time::ZERO, &error))?;
+        let transport = Transport::new(&plan.network).map_err(singular)?;
+        let mut simulation = Self {
+            state: plan.initial.clone(),
+            solver,
+            transport,
+            events: Vec::with_capacity(64),
+            wanted: plan.initial.network.requests.clone(),
+            plan,
+        };
+        simulation.reset()?;
+        Ok(simulation)
+    }
+
+    /// Back to the start of the run: inputs at t = 0, actuators at their initial positions,
+    /// hydraulics solved, all water at its initial temperature.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn reset(&mut self) -> Result<(), RunError> {
+        self.state = self.plan.initial.clone();
+        self.events.clear();
+        for driver in &self.plan.drivers {
+            self.state.signals[driver.signal.index()] = driver.value_at(Time::ZERO);
+        }
+        self.request_units();
+        self.apply_inputs();
+        self.solve_hydraulics()?;
+        self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
+        Ok(())
+    }
+
+    /// Advances to `end` in one step: sense, control, inputs, actuators, unit requests, hydraulics,
+    /// transport, units, flags, balances.
+    fn step_to(&mut self, end: Time) -> Result<(), RunError> {
+        let now = self.state.time;
+        let dt_s = (end - now).as_s();
+        self.control(now)?;
+        self.drive_inputs(end);
+        self.request_units();
+        self.apply_inputs();
+        self.move_actuators(dt_s);
+        self.solve_hydraulics()?;
+        self.transport
+            .advance(&self.plan.network, &mut self.state.network, dt_s)
+            .map_err(|source| RunError::Singular { time: now.to_string(), source })?;
+        self.advance_units(dt_s);
+        self.watch_stations(end, dt_s);
+        self.book(dt_s);
+        self.state.time = end;
+        self.state.steps += 1;
+        Ok(())
+    }
+
+    /// Advances to `target`, as many steps as schedules, controllers and `largest_step` ask for.
+    ///
+    /// # Errors
+    /// [`RunError`] names the component that failed; the state is that of the last good step.
+    pub fn advance_to(&mut self, target: Time, largest_step: Time) -> Result<(), RunError> {
+        while self.state.time < target {
+            let now = self.state.time;
+            let mut end = target.min(now.next_multiple(largest_step));
+            for driver in &self.plan.drivers {
+                end = end.min(driver.next_breakpoint(now));
+            }
+            for (controller, next) in self.plan.controllers.iter().zip(&self.state.next_tick) {
+                if controller.interval > Time::ZERO {
+                    // One that is due now ticks in this step; the next one bounds it.
+                    let next = if *next <= now { *next + controller.interval } else { *next };
+                    end = end.min(next.max(Time(now.0 + 1)));
+                }
+            }
+            self.step_to(end)?;
+        }
+        self.check_temperatures()
+    }
+
+    /// Controllers that are due read their measured channel and write their signal.
+    fn control(&mut self, now: Time) -> Result<(), RunError> {
+        for (i, planned) in self.plan.controllers.iter().enumerate() {
+            if self.state.next_tick[i] > now {
+                continue;
+            }
+            let dt_s = (now - self.state.last_tick[i]).as_s();
+            self.state.last_tick[i] = now;
+            self.state.next_tick[i] = now + planned.interval;
+            let measured = channels::value(&self.plan, &self.state, planned.measures);
+            let set_point = self.state.signals[planned.set_point.index()];
+            let spec = self.plan.signals.spec(planned.acts_on);
+            let output = planned
+                .controller
+                .update(
+                    dt_s,
+                    measured,
+                    set_point,
+                    (spec.min, spec.max),
+                    &mut self.state.controller_states[planned.state.clone()],
+                )
+                .map_err(|source| RunError::Control {
+                    time: now.to_string(),
+                    controller: planned.name.clone(),
+                    source,
+                })?;
+            if !self.state.taken_over[planned.acts_on.index()] {
+                self.state.signals[planned.acts_on.index()] = output;
+            }
+        }
+        Ok(())
+    }
+
+    /// Schedules and series write their signals.
+    fn drive_inputs(&mut self, end: Time) {
+        for driver in &self.plan.drivers {
+            if !self.state.taken_over[driver.signal.index()] {
+                self.state.signals[driver.signal.index()] = driver.value_until(end);
+            }
+        }
+    }
+
+    /// Units say what they want of their ports.
+    fn request_units(&mut self) {
+        for unit in &self.plan.units {
+            let wanted = &mut self.wanted[unit.port..=unit.port];
+            let signals = Signals(&self.state.signals[unit.inputs.clone()]);
+            unit.equipment.request(&self.state.unit_states[unit.state.clone()], &signals, wanted);
+            self.state.network.requests[unit.port] = wanted[0];
+            if let Some(command) = unit.imposes_flow {
+                self.state.signals[command.index()] = wanted[0].m_flow_kg_s;
+            }
+        }
+    }
+
+    /// Boundary values and temperatures around the network follow their signals.
+    fn apply_inputs(&mut self) {
+        let signals = &self.state.signals;
+        let at = |id: Option<SignalId>, or: f64| id.map_or(or, |id| signals[id.index()]);
+        for inputs in &self.plan.node_inputs {
+            let network = &mut self.state.network;
+            let i = inputs.node;
+            network.set_boundary(
+                i,
+                at(inputs.p_pa, network.given_p_pa[i]),
+                at(inputs.m_flow_kg_s, network.given_m_flow_kg_s[i]),
+                at(inputs.t_k, network.given_t_k[i]),
+            );
+        }
+        self.state.network.ambient_k = signals[self.plan.ground.index()];
+        for (around, id) in
+            self.state.network.surroundings_k.iter_mut().zip(&self.plan.surroundings)
+        {
+            *around = signals[id.index()];
+        }
+    }
+
+    /// Actuators follow their commands; an infinite `dt_s` settles them.
+    pub(crate) fn move_actuators(&mut self, dt_s: f64) {
+        for (edge, command) in self.plan.commands.iter().enumerate() {
+            if let Some(command) = command {
+                let command = self.state.signals[command.index()];
+                self.state.network.advance_actuator(&self.plan.network, edge, command, dt_s);
+            }
+        }
+    }
+
+    pub(crate) fn solve_hydraulics(&mut self) -> Result<HydraulicReport, RunError> {
+        let report = self
+            .solver
+            .solve(&self.plan.network, &mut self.state.network)
+            .map_err(|error| named(&self.plan, self.state.time, &error))?;
+        if report.iterations > 0 {
+            self.state.solves += 1;
+            self.state.iterations += u64::from(report.iterations);
+            let worst = &mut self.state.largest_mass_residual_kg_s;
+            *worst = worst.max(report.mass_residual_kg_s);
+        }
+        Ok(report)
+    }
+
+    /// Units take what their ports got.
+    fn advance_units(&mut self, dt_s: f64) {
+        for unit in &self.plan.units {
+            let got = self.state.network.port_flows[unit.port];
+            let signals = Signals(&self.state.signals[unit.inputs.clone()]);
+            unit.equipment.advance(
+                dt_s,
+                &[got],
+                &signals,
+                &mut self.state.unit_states[unit.state.clone()],
+                &mut self.state.unit_outputs[unit.outputs.clone()],
+            );
+        }
+    }
+
+    /// Stations raise and clear their flag.
+    fn watch_stations(&mut self, end: Time, dt_s: f64) {
+        for (i, station) in self.plan.stations.iter().enumerate() {
+            let command = station
+                .pump
+                .and_then(|pump| self.plan.commands[pump.index()])
+                .map_or(0.0, |id| self.state.signals[id.index()]);
+            let memory = &mut self.state.stations[i];
+            let changed =
+                station.watch(&self.plan.network, &self.state.network, command, dt_s, memory);
+            if let Some(blocked) = changed {
+                let flow = station.m_flow_kg_s(&self.state.network);
+                let wanted = station.requested_m_flow_kg_s.unwrap_or(0.0);
+                self.events.push(blocked_event(&self.plan, i, end, blocked, flow, wanted));
+            }
+        }
+    }
+
+    /// Integrates heat, electricity and hydraulic work.
+    fn book(&mut self, dt_s: f64) {
+        let (plan, state) = (&self.plan, &mut self.state);
+        let network = &state.network;
+        state.electric_j += plan.total_electric_w(network) * dt_s;
+        state.units_j += plan.total_units_w(network) * dt_s;
+        state.loss_j += plan.total_loss_w(network) * dt_s;
+        state.boundary_j += network.boundary_w * dt_s;
+        for (heat, station) in state.station_heat_j.iter_mut().zip(&plan.stations) {
+            *heat += network.q_flow_w[station.edge.index()] * dt_s;
+        }
+        let density = plan.network.medium.density_kg_m3;
+        for (i, edge) in plan.network.edges.iter().enumerate() {
+            let work_j = network.m_flow_kg_s[i] * network.dp_pa(&plan.network, i) / density * dt_s;
+            if matches!(
+                edge.element,
+                Element::Pump(_) | Element::FlowSource(_) | Element::PressureSource(_)
+            ) {
+                state.pump_hydraulic_j -= work_j;
+            } else {
+                state.dissipated_j += work_j;
+            }
+        }
+        for (i, node) in plan.network.nodes.iter().enumerate() {
+            if node.kind != NodeKind::Junction {
+                state.pump_hydraulic_j +=
+                    network.exchange_kg_s[i] * network.p_pa[i] / density * dt_s;
+            }
+        }
+    }
+
+    /// Water that would freeze or boil is outside the model.
+    fn check_temperatures(&self) -> Result<(), RunError> {
+        for (i, t_k) in self.state.network.t_node_k.iter().enumerate() {
+            if !(273.15..=373.15).contains(t_k) {
+                let component = self.plan.node_names[i].clone();
+                let time = self.state.time.to_string();
+                return Err(if t_k.is_finite() {
+                    RunError::Temperature { time, component, t_degc: t_k - 273.15 }
+                } else {
+                    RunError::NotFinite { time, component }
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Settles actuators, flows and temperatures once with the present signals; used by the steady
+    /// solve. Returns the hydraulic report.
+    pub(crate) fn settle_once(&mut self) -> Result<HydraulicReport, RunError> {
+        self.request_units();
+        self.apply_inputs();
+        self.move_actuators(f64::INFINITY);
+        let report = self.solve_hydraulics()?;
+        self.transport
+            .settle(&self.plan.network, &mut self.state.network)
+            .map_err(|source| RunError::Singular { time: "steady state".into(), source })?;
+        self.advance_units(0.0);
+        Ok(report)
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Arc<Plan> {
+        &self.plan
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    pub(crate) fn state_mut(&mut self) -> &mut State {
+        &mut self.state
+    }
+
+    /// Simulated time.
+    pub fn time(&self) -> Time {
+        self.state.time
+    }
+
+    /// Takes the events since the last call.
+    pub fn take_events(&mut self) -> std::vec::Drain<'_, Event> {
+        self.events.drain(..)
+    }
+
+    /// The id of an input signal.
+    ///
+    /// # Errors
+    /// [`RunError::UnknownName`] with similar names.
+    pub fn signal(&self, name: &str) -> Result<SignalId, RunError> {
+        self.plan.signals.find(name).ok_or_else(|| {
+            unknown("signal", name, self.plan.signals.specs().iter().map(|spec| spec.name.as_str()))
+        })
+    }
+
+    /// Sets an input signal (SI) and takes it over from schedules and controllers.
+    ///
+    /// # Errors
+    /// [`RunError::OutOfRange`] for values that the signal cannot have.
+    pub fn set(&mut self, id: SignalId, value: f64) -> Result<(), RunError> {
+        let spec = self.plan.signals.spec(id);
+        if !(spec.min..=spec.max).contains(&value) {
+            return Err(RunError::OutOfRange {
+                signal: spec.name.clone(),
+                value,
+                min: spec.min,
+                max: spec.max,
+            });
+        }
+        self.state.signals[id.index()] = value;
+        self.state.taken_over[id.index()] = true;
+        Ok(())
+    }
+
+    /// Gives a signal back to its schedule or controller.
+    pub fn release(&mut self, id: SignalId) {
+        self.state.taken_over[id.index()] = false;
+    }
+
+    /// The id of a channel.
+    ///
+    /// # Errors
+    /// [`RunError::UnknownName`] with similar names.
+    pub fn channel(&self, name: &str) -> Result<ChannelId, RunError> {
+        let names = || self.plan.channels.iter().map(|channel| channel.name.as_str());
+        let index = names().position(|channel| channel == name);
+        index.map(ChannelId::from_index).ok_or_else(|| unknown("channel", name, names()))
+    }
+
+    /// The present value of a channel, SI.
+    pub fn get(&self, id: ChannelId) -> f64 {
+        channels::value(&self.plan, &self.state, self.plan.sources[id.index()])
+    }
+
+    /// Writes the present values of all channels.
+    pub fn fill_row(&self, row: &mut [f64]) {
+        for (value, source) in row.iter_mut().zip(&self.plan.sources) {
+            *value = channels::value(&self.plan, &self.state, *source);
+        }
+    }
+
+    /// The state as a snapshot.
+    pub fn snapshot(&self) -> State {
+        self.state.clone()
+    }
+
+    /// Continues from a snapshot, bit for bit.
+    ///
+    /// # Errors
+    /// [`RunError::Snapshot`] when it belongs to another model.
+    pub fn restore(&mut self, snapshot: &State) -> Result<(), RunError> {
+        let (own, other) = (&self.state, snapshot);
+        let fits = own.signals.len() == other.signals.len()
+            && own.network.m_flow_kg_s.len() == other.network.m_flow_kg_s.len()
+            && own.network.p_pa.len() == other.network.p_pa.len()
+            && own.network.requests.len() == other.network.requests.len()
+            && own.network.parcels.fits(&other.network.parcels)
+            && own.unit_states.len() == other.unit_states.len()
+            && own.controller_states.len() == other.controller_states.len()
+            && own.stations.len() == other.stations.len();
+        if !fits {
+            return Err(RunError::Snapshot { problem: "it is of another model".into() });
+        }
+        self.state.clone_from(snapshot);
+        self.events.clear();
+        Ok(())
+    }
+
+    /// Continues from the bytes of a snapshot.
+    ///
+    /// # Errors
+    /// [`RunError::Snapshot`] when the bytes are torn or of another model.
+    pub fn restore_bytes(&mut self, bytes: &[u8]) -> Result<(), RunError> {
+        let state: State = postcard::from_bytes(bytes)
+            .map_err(|error| RunError::Snapshot { problem: error.to_string() })?;
+        self.restore(&state)
+    }
+}
+
+fn unknown<'a>(what: &'static str, name: &str, names: impl Iterator<Item = &'a str>) -> RunError {
+    let hint = crate::diagnostic::did_you_mean(name, names);
+    let hint = hint.map_or(String::new(), |hint| format!("; {hint}"));
+    RunError::UnknownName { what, name: name.to_owned(), hint }
+}
+
+fn blocked_event(
+    plan: &Plan,
+    station: usize,
+    time: Time,
+    blocked: bool,
+    flow: f64,
+    wanted: f64,
+) -> Event {
+    let component = plan.station_names[station].clone();
+    let density = plan.network.medium.density_kg_m3;
+    let l_min = |m: f64| anergy_core::units::l_min(m, density);
+    let verb = if blocked { "is blocked: it delivers" } else { "is free again: it delivers" };
+    Event {
+        time,
+        severity: if blocked { Severity::Warning } else { Severity::Info },
+        kind: if blocked { "blocked" } else { "unblocked" }.into(),
+        message: format!(
+            "{component} {verb} {:.2} of {:.2} l/min wanted",
+            l_min(flow),
+            l_min(wanted)
+        ),
+        component,
+    }
+}
+
+fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError {
+    let time = time.to_string();
+    let node_name = |id: anergy_core::ids::NodeId| plan.node_names[id.index()].clone();
+    let edge_name = |id: anergy_core::ids::EdgeId| plan.edge_names[id.index()].clone();
+    match *error {
+        HydraulicError::NotConverged {
+            iterations,
+            edge,
+            residual_pa,
+            node,
+            mass_residual_kg_s,
+        } => RunError::NotConverged {
+            time,
+            iterations,
+            edge: edge_name(edge),
+            residual_pa,
+            node: node_name(node),
+            mass_residual_kg_s,
+        },
+        HydraulicError::Unbalanced { node, m_flow_kg_s } => {
+            RunError::Unbalanced { time, node: node_name(node), m_flow_kg_s }
+        }
+        HydraulicError::NotFinite { edge } => {
+            RunError::NotFinite { time, component: format!("edge \"{}\"", edge_name(edge)) }
+        }
+        HydraulicError::Factor(source) => RunError::Singular { time, source },
+    }
+}

@@ -1,0 +1,264 @@
+//! The steady state: inputs frozen at t = 0, actuators arrived, temperatures settled.
+//!
+//! A controller with integral action is replaced by "measured = set point, actuator free within its
+//! limits, else at the limit": an outer Newton iteration on the actuators, its Jacobian by differences
+//! of settled states.
+
+use crate::build::build;
+use crate::channels;
+use crate::error::RunError;
+use crate::model::Model;
+use crate::simulation::Simulation;
+use anergy_network::hydraulics::HydraulicReport;
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+/// Temperatures have settled when none changes by more, K.
+const SETTLED_K: f64 = 1e-9;
+/// Flows have settled when none changes by more, kg/s.
+const SETTLED_KG_S: f64 = 1e-11;
+const MAX_ROUNDS: u32 = 2000;
+const MAX_CONTROL_ROUNDS: u32 = 60;
+/// Actuator change for the difference quotient.
+const DIFFERENCE: f64 = 1e-5;
+/// A set point is reached within this share of its scale.
+const REACHED: f64 = 1e-9;
+
+/// A node in the steady state.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SteadyNode {
+    /// Name.
+    pub id: String,
+    /// Pressure above the atmosphere, Pa.
+    pub p_pa: f64,
+    /// Temperature, K.
+    pub t_k: f64,
+    /// Elevation, m.
+    pub elevation_m: f64,
+}
+
+/// An edge in the steady state.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SteadyEdge {
+    /// Name.
+    pub id: String,
+    /// Registry word.
+    pub kind: String,
+    /// Mass flow from a to b, kg/s.
+    pub m_flow_kg_s: f64,
+    /// `p_a - p_b`, Pa.
+    pub dp_pa: f64,
+}
+
+/// Pressures, flows and temperatures of a whole network.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Steady {
+    /// Nodes in the order of the model.
+    pub nodes: Vec<SteadyNode>,
+    /// Edges in the order of the model.
+    pub edges: Vec<SteadyEdge>,
+    /// Newton iterations of the first (cold) hydraulic solve.
+    pub iterations: u32,
+    /// Largest pressure residual of an edge, Pa.
+    pub residual_pa: f64,
+}
+
+impl Steady {
+    /// The node with a name.
+    pub fn node(&self, id: &str) -> Option<&SteadyNode> {
+        self.nodes.iter().find(|node| node.id == id)
+    }
+
+    /// The edge with a name.
+    pub fn edge(&self, id: &str) -> Option<&SteadyEdge> {
+        self.edges.iter().find(|edge| edge.id == id)
+    }
+}
+
+/// Solves the steady state of a model.
+///
+/// # Errors
+/// What is wrong with the model, or what did not converge.
+pub fn solve(model: &Model) -> Result<Steady, RunError> {
+    let mut simulation = Simulation::new(build(model)?)?;
+    let report = settle(&mut simulation)?;
+    Ok(table(&simulation, report))
+}
+
+/// Brings a simulation into its steady state at the present inputs.
+///
+/// # Errors
+/// [`RunError::NotSettled`] names what still moves.
+pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> {
+    // Count the iterations of a cold solve at the settled actuators.
+    simulation.state_mut().network.invalidate_hydraulics();
+    let first = simulation.settle_once()?;
+    if simulation.plan().controllers.is_empty() {
+        settle_temperatures(simulation)?;
+    } else {
+        settle_controllers(simulation)?;
+    }
+    simulation.state_mut().network.invalidate_hydraulics();
+    let last = simulation.solve_hydraulics()?;
+    Ok(HydraulicReport { iterations: first.iterations, ..last })
+}
+
+fn settle_temperatures(simulation: &mut Simulation) -> Result<(), RunError> {
+    let mut culprit = String::new();
+    for _ in 0..MAX_ROUNDS {
+        let before = simulation.state().network.clone();
+        simulation.settle_once()?;
+        let after = &simulation.state().network;
+        let largest = |old: &[f64], new: &[f64]| {
+            old.iter().zip(new).map(|(old, new)| (new - old).abs()).enumerate().fold(
+                (0, 0.0_f64),
+                |worst, (i, change)| if change > worst.1 { (i, change) } else { worst },
+            )
+        };
+        let (node, node_change) = largest(&before.t_node_k, &after.t_node_k);
+        let (port, port_change) = largest(&before.t_secondary_k, &after.t_secondary_k);
+        let (edge, flow_change) = largest(&before.m_flow_kg_s, &after.m_flow_kg_s);
+        let plan = simulation.plan();
+        if flow_change > SETTLED_KG_S {
+            culprit = format!(
+                "edge \"{}\" changes by {flow_change:.2e} kg/s per round",
+                plan.edge_names[edge]
+            );
+        } else if node_change > SETTLED_K {
+            culprit = format!(
+                "node \"{}\" changes by {node_change:.2e} K per round",
+                plan.node_names[node]
+            );
+        } else if port_change > SETTLED_K {
+            let unit = plan.units.iter().find(|unit| unit.port == port);
+            let name = unit.map_or("", |unit| unit.name.as_str());
+            culprit = format!("unit \"{name}\" changes by {port_change:.2e} K per round");
+        } else {
+            return Ok(());
+        }
+    }
+    Err(RunError::NotSettled { iterations: MAX_ROUNDS, culprit })
+}
+
+/// Newton on the actuators of all controllers, within their limits.
+fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
+    let plan = simulation.plan().clone();
+    let n = plan.controllers.len();
+    let limits: Vec<(f64, f64)> = plan
+        .controllers
+        .iter()
+        .map(|controller| {
+            let spec = plan.signals.spec(controller.acts_on);
+            controller.controller.output_limits((spec.min, spec.max))
+        })
+        .collect();
+    let set =
+        |simulation: &mut Simulation, outputs: &DVector<f64>| -> Result<DVector<f64>, RunError> {
+            for (controller, output) in plan.controllers.iter().zip(outputs) {
+                simulation.state_mut().signals[controller.acts_on.index()] = *output;
+            }
+            settle_temperatures(simulation)?;
+            Ok(errors(simulation))
+        };
+    let start = |(min, max): (f64, f64)| {
+        if min.is_finite() && max.is_finite() { min + 0.7 * (max - min) } else { 0.0 }
+    };
+    let mut outputs = DVector::from_iterator(n, limits.iter().map(|l| start(*l)));
+    let scale: Vec<f64> = plan
+        .controllers
+        .iter()
+        .map(|c| simulation.state().signals[c.set_point.index()].abs().max(1e-3))
+        .collect();
+    for _ in 0..MAX_CONTROL_ROUNDS {
+        let error = set(simulation, &outputs)?;
+        // At a limit, an error that pushes beyond it stays.
+        let held = |i: usize| {
+            let push = error[i] * plan.controllers[i].controller.direction();
+            (outputs[i] >= limits[i].1 && push > 0.0) || (outputs[i] <= limits[i].0 && push < 0.0)
+        };
+        let free: Vec<usize> = (0..n).filter(|&i| !held(i)).collect();
+        if free.iter().all(|&i| error[i].abs() <= REACHED * scale[i]) {
+            return Ok(());
+        }
+        let mut jacobian = DMatrix::zeros(free.len(), free.len());
+        for (column, &i) in free.iter().enumerate() {
+            let step = if outputs[i] + DIFFERENCE > limits[i].1 { -DIFFERENCE } else { DIFFERENCE };
+            let mut moved = outputs.clone();
+            moved[i] += step;
+            let moved_error = set(simulation, &moved)?;
+            for (row, &j) in free.iter().enumerate() {
+                jacobian[(row, column)] = (moved_error[j] - error[j]) / step;
+            }
+        }
+        let rhs = DVector::from_iterator(free.len(), free.iter().map(|&i| -error[i]));
+        let Some(change) = jacobian.lu().solve(&rhs) else {
+            let name = &plan.controllers[free[0]].name;
+            return Err(RunError::NotSettled {
+                iterations: 1,
+                culprit: format!(
+                    "the actuator of controller \"{name}\" has no effect on what it measures"
+                ),
+            });
+        };
+        for (k, &i) in free.iter().enumerate() {
+            let (min, max) = limits[i];
+            let range = if (max - min).is_finite() { max - min } else { f64::INFINITY };
+            outputs[i] = (outputs[i] + change[k].clamp(-0.3 * range, 0.3 * range)).clamp(min, max);
+        }
+    }
+    let error = errors(simulation);
+    let worst =
+        (0..n).max_by(|&i, &j| (error[i].abs() / scale[i]).total_cmp(&(error[j].abs() / scale[j])));
+    let worst = worst.unwrap_or(0);
+    Err(RunError::NotSettled {
+        iterations: MAX_CONTROL_ROUNDS,
+        culprit: format!(
+            "controller \"{}\" misses its set point by {:.3e}",
+            plan.controllers[worst].name, error[worst]
+        ),
+    })
+}
+
+/// Set point minus measured value of every controller.
+fn errors(simulation: &Simulation) -> DVector<f64> {
+    let (plan, state) = (simulation.plan(), simulation.state());
+    DVector::from_iterator(
+        plan.controllers.len(),
+        plan.controllers.iter().map(|controller| {
+            state.signals[controller.set_point.index()]
+                - channels::value(plan, state, controller.measures)
+        }),
+    )
+}
+
+/// The tables of a settled simulation.
+pub fn table(simulation: &Simulation, report: HydraulicReport) -> Steady {
+    let (plan, network) = (simulation.plan(), &simulation.state().network);
+    Steady {
+        nodes: plan
+            .node_names
+            .iter()
+            .enumerate()
+            .map(|(i, id)| SteadyNode {
+                id: id.clone(),
+                p_pa: network.p_pa[i],
+                t_k: network.t_node_k[i],
+                elevation_m: plan.network.nodes[i].elevation_m,
+            })
+            .collect(),
+        edges: plan
+            .map
+            .edges
+            .iter()
+            .enumerate()
+            .map(|(i, edge)| SteadyEdge {
+                id: edge.id.clone(),
+                kind: edge.kind.clone(),
+                m_flow_kg_s: network.m_flow_kg_s[i],
+                dp_pa: network.dp_pa(&plan.network, i),
+            })
+            .collect(),
+        iterations: report.iterations,
+        residual_pa: report.residual_pa,
+    }
+}
