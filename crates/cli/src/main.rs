@@ -1,1 +1,99 @@
-fn main() {}
+//! The program `anergy`: runs, solves and checks models, writes reports.
+#![allow(clippy::print_stderr)]
+
+mod commands;
+mod failure;
+mod interrupt;
+mod output;
+mod progress;
+mod tables;
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Thermo-hydraulic simulation of district heating and cooling networks with prosumers.
+#[derive(Debug, Parser)]
+#[command(name = "anergy", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the embedded three-house study: progress, key results, results.mcap, summary.json, report.html
+    Demo {
+        /// Folder for the results
+        #[arg(long, value_name = "DIR", default_value = "results/demo")]
+        out: PathBuf,
+    },
+    /// Run a model over time
+    Run {
+        /// Model file
+        model: PathBuf,
+        /// End of the run, for example 1d (overrides the model)
+        #[arg(long, value_name = "DURATION")]
+        until: Option<String>,
+        /// Largest time step, for example 10s (overrides the model)
+        #[arg(long, value_name = "DURATION")]
+        step: Option<String>,
+        /// Time between recorded rows, for example 60s (overrides the model)
+        #[arg(long, value_name = "DURATION")]
+        record: Option<String>,
+        /// Folder for results.mcap, summary.json and report.html [default: results/<name of the model file>]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Solve the steady state with the inputs of t = 0
+    Solve {
+        /// Model file
+        model: PathBuf,
+        /// Also write the tables as JSON ("-" for standard output)
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Find everything that is wrong with a model
+    Check {
+        /// Model file
+        model: PathBuf,
+        /// Print the model as plain nodes and edges
+        #[arg(long)]
+        expand: bool,
+        /// List every value that was not given, with its source
+        #[arg(long)]
+        explain_defaults: bool,
+        /// List the input signals that schedules, series and controllers can drive
+        #[arg(long)]
+        signals: bool,
+    },
+    /// Print the JSON Schema of the model file
+    Schema,
+    /// Make the HTML report of recorded results
+    Report {
+        /// results.mcap of a run
+        results: PathBuf,
+        /// The report
+        #[arg(long, value_name = "FILE", default_value = "report.html")]
+        out: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Demo { out } => commands::demo::demo(&out),
+        Command::Run { model, until, step, record, out } => {
+            commands::run::run(&model, [until, step, record], out.as_deref())
+        }
+        Command::Solve { model, json } => commands::solve::solve(&model, json.as_deref()),
+        Command::Check { model, expand, explain_defaults, signals } => {
+            commands::check::check(&model, expand, explain_defaults, signals)
+        }
+        Command::Schema => commands::schema::schema(),
+        Command::Report { results, out } => commands::report::report(&results, &out),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
