@@ -184,11 +184,11 @@ const RISE_TO_LAG: f64 = 0.128_718_850_581_116_7;
 const SETTLED: f64 = 1e-9;
 
 impl crate::graph::Node {
-    /// Water that mixes at the node, kg: at least 10 mg, so that the temperature of a node without
+    /// Water that mixes at the node, kg: at least 1 mg, so that the temperature of a node without
     /// volume stays defined, and its energy exact, when the flow stops.
     #[inline]
     pub fn water_kg(&self, density_kg_m3: f64) -> f64 {
-        (self.volume_m3 * density_kg_m3).max(1e-5)
+        (self.volume_m3 * density_kg_m3).max(1e-6)
     }
 
     /// Whether the node's pressure is given.

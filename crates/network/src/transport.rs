@@ -7,7 +7,7 @@
 //!
 //! **Equation** node with mass M: `M dT/dt = sum m_in (T_in - T)`, solved exactly over the step:
 //! with `a = sum m_in dt/M` the mean outflow temperature is `g T_old + (1-g) T_mix`,
-//! `g = (1 - e^-a)/a`. Nodes without volume relax to the ambient within [`NODE_RELAXATION_S`].
+//! `g = (1 - e^-a)/a`. Standing nodes without volume relax to the ambient in [`NODE_RELAXATION_S`].
 //!
 //! **Sources** specification 9 and 10; `vanderheijde2017`.
 
@@ -142,6 +142,7 @@ impl Transport {
         state: &mut NetworkState,
         dt_s: f64,
     ) -> Result<(), FactorError> {
+        self.collect_inflows(network, state);
         self.relax_nodes(network, state, dt_s);
         for edge in 0..network.edges.len() {
             self.relation[edge] = self.edge_relation(network, state, edge, Some(dt_s));
@@ -163,6 +164,7 @@ impl Transport {
         network: &Network,
         state: &mut NetworkState,
     ) -> Result<(), FactorError> {
+        self.collect_inflows(network, state);
         for edge in 0..network.edges.len() {
             self.relation[edge] = self.edge_relation(network, state, edge, None);
         }
@@ -272,28 +274,24 @@ impl Transport {
         }
     }
 
-    /// Water of nodes without volume slowly takes the temperature around it.
+    /// Water of nodes without volume and without flow slowly takes the temperature around it.
     fn relax_nodes(&mut self, network: &Network, state: &mut NetworkState, dt_s: f64) {
         let share = -(-dt_s / NODE_RELAXATION_S).exp_m1();
         let medium = &network.medium;
         let mut lost = 0.0;
         for (i, node) in network.nodes.iter().enumerate() {
-            if node.volume_m3 == 0.0 {
+            let water_kg = node.water_kg(medium.density_kg_m3);
+            if node.volume_m3 == 0.0 && self.inflow_kg_s[i] * dt_s < water_kg {
                 let drop = (state.t_node_k[i] - state.ambient_k) * share;
                 state.t_node_k[i] -= drop;
-                lost += node.water_kg(medium.density_kg_m3) * medium.heat_capacity_j_kg_k * drop;
+                lost += water_kg * medium.heat_capacity_j_kg_k * drop;
             }
         }
         state.q_loss_nodes_w = lost / dt_s;
     }
 
-    /// Mean temperatures of the water that leaves the nodes.
-    fn node_temperatures(
-        &mut self,
-        network: &Network,
-        state: &NetworkState,
-        dt_s: Option<f64>,
-    ) -> Result<(), FactorError> {
+    /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring.
+    fn collect_inflows(&mut self, network: &Network, state: &NetworkState) {
         self.inflow_kg_s.fill(0.0);
         self.inflow_heat.fill(0.0);
         for (i, edge) in network.edges.iter().enumerate() {
@@ -309,6 +307,15 @@ impl Transport {
                 self.inflow_heat[i] += exchange * state.given_t_k[i];
             }
         }
+    }
+
+    /// Mean temperatures of the water that leaves the nodes.
+    fn node_temperatures(
+        &mut self,
+        network: &Network,
+        state: &NetworkState,
+        dt_s: Option<f64>,
+    ) -> Result<(), FactorError> {
         self.sort_nodes(network, state);
         if self.order.len() == network.nodes.len() {
             for k in 0..self.order.len() {
@@ -353,12 +360,12 @@ impl Transport {
         let water_kg = network.nodes[node].water_kg(network.medium.density_kg_m3);
         match dt_s {
             Some(dt_s) => volume_shares(inflow * dt_s, water_kg).0,
-            // The steady state of the relaxation: T (m + M/t_relax) = m T_mix + M/t_relax T_ambient
-            None if network.nodes[node].volume_m3 == 0.0 => {
+            // Some relaxation also where water flows (some 1e-7 K), so that a loop without any other
+            // exchange of heat has a temperature: T (m + M/t_relax) = m T_mix + M/t_relax T_ambient.
+            None => {
                 let relaxing = water_kg / NODE_RELAXATION_S;
                 relaxing / (relaxing + inflow)
             }
-            None => 0.0,
         }
     }
 

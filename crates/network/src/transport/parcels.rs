@@ -6,7 +6,8 @@
 //! arena with a fixed range per pipe.
 //!
 //! **Numerics** neighbours are merged, conserving enthalpy exactly, when one straight line describes
-//! both within [`MERGE_TOLERANCE_K`]; when a pipe's range is full, the pair that loses least is merged.
+//! both and the changes by all their merges stay within [`MERGE_TOLERANCE_K`]; when a pipe's range is
+//! full, the pair that loses least is merged.
 
 use crate::graph::Network;
 use crate::two_port::EdgeThermal;
@@ -14,8 +15,11 @@ use anergy_core::medium::Medium;
 use anergy_core::port::Port;
 use serde::{Deserialize, Serialize};
 
-/// Neighbouring parcels become one when no temperature changes by more than this, K.
-pub const MERGE_TOLERANCE_K: f64 = 2e-4;
+/// Largest change of a temperature by all merges since the water entered, K.
+pub const MERGE_TOLERANCE_K: f64 = 5e-4;
+/// Water that enters in a step with less than this share of the content (standing water, rounding of
+/// flows) is absorbed by its neighbour instead of becoming a parcel.
+const ABSORBED_SHARE: f64 = 1e-9;
 /// Largest number of parcels in a pipe.
 pub const PARCELS_PER_PIPE: usize = 200;
 
@@ -28,9 +32,15 @@ pub struct Parcel {
     pub t_a_k: f64,
     /// Temperature at the end towards port b, K.
     pub t_b_k: f64,
+    /// Bound of what merges have changed so far, K.
+    pub merged_k: f64,
 }
 
 impl Parcel {
+    fn new(mass_kg: f64, t_a_k: f64, t_b_k: f64) -> Self {
+        Self { mass_kg, t_a_k, t_b_k, merged_k: 0.0 }
+    }
+
     /// Mean temperature, K.
     #[inline]
     pub fn mean_k(&self) -> f64 {
@@ -77,7 +87,7 @@ impl Parcels {
                 let full = parcels.arena.len() + PARCELS_PER_PIPE;
                 parcels.arena.resize(full, Parcel::default());
                 parcels.arena[start as usize] =
-                    Parcel { mass_kg: pipe.content_kg, t_a_k: initial_k, t_b_k: initial_k };
+                    Parcel::new(pipe.content_kg, initial_k, initial_k);
             } else {
                 parcels.ring_of_edge.push(NO_PIPE);
             }
@@ -140,7 +150,7 @@ impl Parcels {
         let Some(ring) = self.ring(edge) else { return };
         (self.rings[ring].first, self.rings[ring].len) = (0, 1);
         let only = self.at(ring, 0);
-        self.arena[only] = Parcel { mass_kg, t_a_k, t_b_k };
+        self.arena[only] = Parcel::new(mass_kg, t_a_k, t_b_k);
     }
 
     /// Arena index of the i-th parcel counted from an end.
@@ -152,23 +162,47 @@ impl Parcels {
         }
     }
 
-    /// Mean temperature of the `mass_kg` of water nearest to an end, K.
-    pub fn mean_near(&self, edge: usize, port: Port, mass_kg: f64) -> f64 {
+    /// Mean temperature of the `mass_kg` of water nearest to an end, K, when it leaves there: what is
+    /// `x` kg from the end has relaxed towards `surroundings_k` by `exp(-x/decay_kg)` until then.
+    /// An infinite `decay_kg` gives the mean temperature as it is.
+    pub fn mean_leaving(
+        &self,
+        edge: usize,
+        port: Port,
+        mass_kg: f64,
+        surroundings_k: f64,
+        decay_kg: f64,
+    ) -> f64 {
         let Some(ring) = self.ring(edge) else { return f64::NAN };
-        let (mut rest, mut heat, mut last) = (mass_kg, 0.0, f64::NAN);
+        let (mut rest, mut excess, mut last) = (mass_kg, 0.0, f64::NAN);
+        let mut passed = 1.0;
         for i in 0..self.rings[ring].len as usize {
             let parcel = self.arena[self.nth_from(ring, port, i)];
-            last = parcel.end_k(port.opposite());
-            if parcel.mass_kg >= rest {
-                heat += rest * near_part_mean(&parcel, port, rest);
-                rest = 0.0;
+            let part_kg = parcel.mass_kg.min(rest);
+            let (near, far) = (parcel.end_k(port), parcel.end_k(port.opposite()));
+            last = near + (far - near) * part_kg / parcel.mass_kg;
+            let (a, b) = (near - surroundings_k, last - surroundings_k);
+            let ratio = part_kg / decay_kg;
+            let (of_near, of_slope) = exponential_means(ratio);
+            excess += passed * part_kg * (a * of_near + (b - a) * of_slope);
+            passed *= (-ratio).exp();
+            rest -= part_kg;
+            if rest <= 0.0 {
                 break;
             }
-            heat += parcel.mass_kg * parcel.mean_k();
-            rest -= parcel.mass_kg;
         }
-        // Rounding of the masses may leave a trace beyond the last parcel.
-        if mass_kg > 0.0 { (heat + rest * last) / mass_kg } else { self.near_end(ring, port) }
+        if mass_kg > 0.0 {
+            // Rounding of the masses may leave a trace beyond the last parcel.
+            let trace = rest.max(0.0) * passed * (last - surroundings_k);
+            surroundings_k + (excess + trace) / mass_kg
+        } else {
+            self.near_end(ring, port)
+        }
+    }
+
+    /// Mean temperature of the `mass_kg` of water nearest to an end, K.
+    pub fn mean_near(&self, edge: usize, port: Port, mass_kg: f64) -> f64 {
+        self.mean_leaving(edge, port, mass_kg, 0.0, f64::INFINITY)
     }
 
     fn near_end(&self, ring: usize, port: Port) -> f64 {
@@ -202,22 +236,41 @@ impl Parcels {
         }
     }
 
-    /// Adds water at an end; `outer_k` is the temperature at the end itself, `inner_k` where it meets
-    /// the parcels that were there.
-    pub fn add(&mut self, edge: usize, port: Port, mass_kg: f64, outer_k: f64, inner_k: f64) {
+    /// Adds water at an end of a pipe that holds `content_kg`; `outer_k` is the temperature at the end
+    /// itself, `inner_k` where it meets the parcels that were there.
+    pub fn add(
+        &mut self,
+        edge: usize,
+        port: Port,
+        (mass_kg, content_kg): (f64, f64),
+        outer_k: f64,
+        inner_k: f64,
+    ) {
         let Some(ring) = self.ring(edge) else { return };
         let (t_a_k, t_b_k) = match port {
             Port::A => (outer_k, inner_k),
             Port::B => (inner_k, outer_k),
         };
-        let new = Parcel { mass_kg, t_a_k, t_b_k };
+        let new = Parcel::new(mass_kg, t_a_k, t_b_k);
         let neighbour = self.nth_from(ring, port, 0);
+        if mass_kg < ABSORBED_SHARE * content_kg {
+            let beside = &mut self.arena[neighbour];
+            let total_kg = beside.mass_kg + mass_kg;
+            let shift = mass_kg / total_kg * (new.mean_k() - beside.mean_k());
+            *beside = Parcel {
+                mass_kg: total_kg,
+                t_a_k: beside.t_a_k + shift,
+                t_b_k: beside.t_b_k + shift,
+                merged_k: beside.merged_k,
+            };
+            return;
+        }
         let (left, right) = match port {
             Port::A => (new, self.arena[neighbour]),
             Port::B => (self.arena[neighbour], new),
         };
-        let (merged, error_k) = merge(left, right);
-        if error_k <= MERGE_TOLERANCE_K {
+        let merged = merge(left, right);
+        if merged.merged_k <= MERGE_TOLERANCE_K {
             self.arena[neighbour] = merged;
             return;
         }
@@ -238,7 +291,7 @@ impl Parcels {
         let Some(ring) = self.ring(edge) else { return };
         (self.rings[ring].first, self.rings[ring].len) = (0, 1);
         let only = self.at(ring, 0);
-        self.arena[only] = Parcel { mass_kg, t_a_k, t_b_k };
+        self.arena[only] = Parcel::new(mass_kg, t_a_k, t_b_k);
     }
 
     /// Lets all parcels of a pipe relax towards `surroundings_k` by the factor `decay`; returns
@@ -263,7 +316,7 @@ impl Parcels {
         let pair = |i: usize| (self.arena[self.at(ring, i)], self.arena[self.at(ring, i + 1)]);
         let cost = |i: usize| {
             let (left, right) = pair(i);
-            merge(left, right).1 * (left.mass_kg + right.mass_kg)
+            merge(left, right).merged_k * (left.mass_kg + right.mass_kg)
         };
         let (mut best, mut best_cost) = (0, f64::INFINITY);
         for i in 0..len - 1 {
@@ -274,7 +327,7 @@ impl Parcels {
         }
         let (left, right) = pair(best);
         let target = self.at(ring, best);
-        self.arena[target] = merge(left, right).0;
+        self.arena[target] = merge(left, right);
         for i in best + 1..len - 1 {
             let (to, from) = (self.at(ring, i), self.at(ring, i + 1));
             self.arena[to] = self.arena[from];
@@ -283,23 +336,27 @@ impl Parcels {
     }
 }
 
-/// Mean temperature of the `mass_kg` of a parcel nearest to an end.
+/// Means over 0..1 of `e^(-r s)` and of `s e^(-r s)`.
 #[inline]
-fn near_part_mean(parcel: &Parcel, port: Port, mass_kg: f64) -> f64 {
-    let (near, far) = (parcel.end_k(port), parcel.end_k(port.opposite()));
-    near + 0.5 * (far - near) * mass_kg / parcel.mass_kg
+fn exponential_means(r: f64) -> (f64, f64) {
+    if r < 1e-3 {
+        // Series, where the closed form cancels.
+        return (1.0 - r / 2.0 + r * r / 6.0, 0.5 - r / 3.0 + r * r / 8.0);
+    }
+    let of_one = -(-r).exp_m1() / r;
+    (of_one, (of_one - (-r).exp()) / r)
 }
 
-/// One parcel for two neighbours (left towards port a) with the same enthalpy, and the largest change
-/// of a temperature at the ends and where they meet, K.
-fn merge(left: Parcel, right: Parcel) -> (Parcel, f64) {
+/// One parcel for two neighbours (left towards port a) with the same enthalpy; its `merged_k` grows by
+/// the largest change of a temperature at the ends and where they meet.
+fn merge(left: Parcel, right: Parcel) -> Parcel {
     let mass_kg = left.mass_kg + right.mass_kg;
     let mean = (left.mass_kg * left.mean_k() + right.mass_kg * right.mean_k()) / mass_kg;
     let shift = mean - 0.5 * (left.t_a_k + right.t_b_k);
     let (t_a_k, t_b_k) = (left.t_a_k + shift, right.t_b_k + shift);
     let joint = t_a_k + (t_b_k - t_a_k) * left.mass_kg / mass_kg;
-    let error = shift.abs().max((joint - left.t_b_k).abs()).max((joint - right.t_a_k).abs());
-    (Parcel { mass_kg, t_a_k, t_b_k }, error)
+    let change = shift.abs().max((joint - left.t_b_k).abs()).max((joint - right.t_a_k).abs());
+    Parcel { mass_kg, t_a_k, t_b_k, merged_k: left.merged_k.max(right.merged_k) + change }
 }
 
 #[cfg(test)]
@@ -326,9 +383,9 @@ mod tests {
         pipe.replace(0, 10.0, 300.0, 300.0);
         // 4 kg of 350 K from a, then everything back by 1 kg: 3 kg of 350 K remain at a.
         pipe.remove(0, Port::B, 4.0);
-        pipe.add(0, Port::A, 4.0, 350.0, 350.0);
+        pipe.add(0, Port::A, (4.0, 10.0), 350.0, 350.0);
         pipe.remove(0, Port::A, 1.0);
-        pipe.add(0, Port::B, 1.0, 280.0, 280.0);
+        pipe.add(0, Port::B, (1.0, 10.0), 280.0, 280.0);
         assert!((pipe.mean_near(0, Port::A, 3.0) - 350.0).abs() < 1e-12);
         assert!((pipe.mean_near(0, Port::A, 4.0) - (3.0 * 350.0 + 300.0) / 4.0).abs() < 1e-12);
         assert!((pipe.mean_near(0, Port::B, 1.0) - 280.0).abs() < 1e-12);
@@ -349,7 +406,7 @@ mod tests {
             let mass = 0.05 + f64::from(i % 7) * 0.03;
             heat -= mass * pipe.mean_near(0, from, mass);
             pipe.remove(0, from, mass);
-            pipe.add(0, into, mass, t, t - 0.1);
+            pipe.add(0, into, (mass, 100.0), t, t - 0.1);
             heat += mass * (t - 0.05);
             assert!(pipe.count(0) <= PARCELS_PER_PIPE);
         }
@@ -365,7 +422,7 @@ mod tests {
         for i in 0..100 {
             let t = 300.0 + f64::from(i) * 0.01;
             pipe.remove(0, Port::B, 1.0);
-            pipe.add(0, Port::A, 1.0, t + 0.01, t);
+            pipe.add(0, Port::A, (1.0, 100.0), t + 0.01, t);
         }
         assert_eq!(pipe.count(0), 1);
         assert!((pipe.mean_near(0, Port::B, 100.0) - 300.5).abs() < 1e-9);
