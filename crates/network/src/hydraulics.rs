@@ -14,6 +14,7 @@
 //! **Sources** Todini and Pilati 1988, Collins et al. 1978 (keys `todini1988`, `collins1978`).
 
 mod assemble;
+mod ideal;
 
 use crate::graph::Network;
 use crate::state::NetworkState;

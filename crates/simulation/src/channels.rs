@@ -1,6 +1,7 @@
 //! What can be recorded and measured: every quantity of every component by name.
 
-use crate::simulation::{Plan, State};
+use crate::plan::Plan;
+use crate::state::State;
 use anergy_core::ids::SignalId;
 use anergy_core::port::Port;
 use anergy_core::recorder::{Channel, ChannelGroup};

@@ -47,6 +47,8 @@ pub mod model;
 pub mod model_file;
 pub mod overlay;
 pub mod plain;
+pub mod plan;
 pub mod run;
 pub mod simulation;
+pub mod state;
 pub mod steady;

@@ -78,7 +78,7 @@ pub fn run(
     }
 }
 
-fn header(plan: &crate::simulation::Plan, until: Time, step: Time, record: Time) -> RunHeader {
+fn header(plan: &crate::plan::Plan, until: Time, step: Time, record: Time) -> RunHeader {
     let setting = |name: &str, value: String| (name.to_owned(), value);
     RunHeader {
         model_name: plan.model_name.clone(),

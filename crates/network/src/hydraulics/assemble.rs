@@ -1,5 +1,6 @@
 //! The nodal system: which node is which unknown, the matrix, the right-hand side, the residuals.
 
+use super::ideal::{IdealLink, ideal_forest};
 use crate::graph::{Network, NodeKind, UnionFind};
 use crate::hydraulics::HydraulicError;
 use crate::state::NetworkState;
@@ -17,14 +18,6 @@ struct EdgeSlots {
     diagonal_a: u32,
     diagonal_b: u32,
     off_diagonal: u32,
-}
-
-/// An ideal head source in the tree that merges nodes, leaves last.
-#[derive(Debug, Clone, Copy)]
-struct IdealLink {
-    edge: u32,
-    parent: u32,
-    child: u32,
 }
 
 /// Largest residuals and where.
@@ -382,36 +375,4 @@ impl NodalSystem {
             }
         }
     }
-}
-
-/// Ideal head sources as trees, root (a fixed node where there is one) first.
-fn ideal_forest(network: &Network) -> Vec<IdealLink> {
-    let n = network.nodes.len();
-    let mut incident: Vec<Vec<u32>> = vec![Vec::new(); n];
-    for (i, edge) in network.edges.iter().enumerate().filter(|(_, edge)| network.is_ideal(edge)) {
-        incident[edge.from.index()].push(i as u32);
-        incident[edge.to.index()].push(i as u32);
-    }
-    let mut seen = vec![false; n];
-    let mut links = Vec::new();
-    let fixed_first = (0..n)
-        .filter(|&i| network.nodes[i].has_fixed_pressure())
-        .chain((0..n).filter(|&i| !network.nodes[i].has_fixed_pressure()));
-    for root in fixed_first {
-        if std::mem::replace(&mut seen[root], true) {
-            continue;
-        }
-        let mut stack = vec![root];
-        while let Some(parent) = stack.pop() {
-            for &edge in &incident[parent] {
-                let ends = &network.edges[edge as usize];
-                let child = if ends.from.index() == parent { ends.to } else { ends.from };
-                if !std::mem::replace(&mut seen[child.index()], true) {
-                    links.push(IdealLink { edge, parent: parent as u32, child: child.0 });
-                    stack.push(child.index());
-                }
-            }
-        }
-    }
-    links
 }

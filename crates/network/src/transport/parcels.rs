@@ -86,8 +86,7 @@ impl Parcels {
                 parcels.rings.push(Ring { start, first: 0, len: 1 });
                 let full = parcels.arena.len() + PARCELS_PER_PIPE;
                 parcels.arena.resize(full, Parcel::default());
-                parcels.arena[start as usize] =
-                    Parcel::new(pipe.content_kg, initial_k, initial_k);
+                parcels.arena[start as usize] = Parcel::new(pipe.content_kg, initial_k, initial_k);
             } else {
                 parcels.ring_of_edge.push(NO_PIPE);
             }

@@ -1,0 +1,254 @@
+//! Nodes during a step: mixing in flow direction, and loops that have to be solved together.
+
+use super::{NODE_RELAXATION_S, Transport, volume_shares};
+use crate::graph::{Network, NodeKind};
+use crate::state::NetworkState;
+use anergy_core::error::FactorError;
+
+impl Transport {
+    /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring.
+    pub(super) fn collect_inflows(&mut self, network: &Network, state: &NetworkState) {
+        self.inflow_kg_s.fill(0.0);
+        self.inflow_heat.fill(0.0);
+        for (i, edge) in network.edges.iter().enumerate() {
+            let m = state.m_flow_kg_s[i];
+            if m != 0.0 {
+                self.inflow_kg_s[edge.downstream(m).index()] += m.abs();
+            }
+        }
+        for (i, node) in network.nodes.iter().enumerate() {
+            let exchange = state.exchange_kg_s[i];
+            if exchange > 0.0 && node.kind != NodeKind::PressureReference {
+                self.inflow_kg_s[i] += exchange;
+                self.inflow_heat[i] += exchange * state.given_t_k[i];
+            }
+        }
+    }
+
+    /// Water of nodes without volume and without flow slowly takes the temperature around it.
+    pub(super) fn relax_nodes(&mut self, network: &Network, state: &mut NetworkState, dt_s: f64) {
+        let share = -(-dt_s / NODE_RELAXATION_S).exp_m1();
+        let medium = &network.medium;
+        let mut lost = 0.0;
+        for (i, node) in network.nodes.iter().enumerate() {
+            let water_kg = node.water_kg(medium.density_kg_m3);
+            if node.volume_m3 == 0.0 && self.inflow_kg_s[i] * dt_s < water_kg {
+                let drop = (state.t_node_k[i] - state.ambient_k) * share;
+                state.t_node_k[i] -= drop;
+                lost += water_kg * medium.heat_capacity_j_kg_k * drop;
+            }
+        }
+        state.q_loss_nodes_w = lost / dt_s;
+    }
+
+    /// Mean temperatures of the water that leaves the nodes.
+    pub(super) fn node_temperatures(
+        &mut self,
+        network: &Network,
+        state: &NetworkState,
+        dt_s: Option<f64>,
+    ) -> Result<(), FactorError> {
+        self.sort_nodes(network, state);
+        if self.order.len() == network.nodes.len() {
+            for k in 0..self.order.len() {
+                let node = self.order[k] as usize;
+                self.t_mean_k[node] = self.mixed_node(network, state, node, dt_s);
+            }
+            return Ok(());
+        }
+        self.solve_loops(network, state, dt_s)
+    }
+
+    /// Temperature of a node whose upstream nodes are known.
+    pub(super) fn mixed_node(
+        &self,
+        network: &Network,
+        state: &NetworkState,
+        node: usize,
+        dt_s: Option<f64>,
+    ) -> f64 {
+        let mut heat = self.inflow_heat[node];
+        for &i in &self.incident[self.first[node] as usize..self.first[node + 1] as usize] {
+            let (i, m) = (i as usize, state.m_flow_kg_s[i as usize]);
+            if m != 0.0 && network.edges[i].downstream(m).index() == node {
+                heat += m.abs() * self.outlet_k(network, state, i);
+            }
+        }
+        let kept = self.kept_share(network, node, dt_s);
+        let inflow = self.inflow_kg_s[node];
+        let (old_k, mixed_k) = (
+            if dt_s.is_some() { state.t_node_k[node] } else { state.ambient_k },
+            if inflow > 0.0 { heat / inflow } else { 0.0 },
+        );
+        kept * old_k + (1.0 - kept) * mixed_k
+    }
+
+    /// Share of the old (or, in the steady state, the ambient) temperature in a node's mean outflow.
+    pub(super) fn kept_share(&self, network: &Network, node: usize, dt_s: Option<f64>) -> f64 {
+        let inflow = self.inflow_kg_s[node];
+        if inflow == 0.0 {
+            return 1.0;
+        }
+        let water_kg = network.nodes[node].water_kg(network.medium.density_kg_m3);
+        match dt_s {
+            Some(dt_s) => volume_shares(inflow * dt_s, water_kg).0,
+            // Some relaxation also where water flows (some 1e-7 K), so that a loop without any other
+            // exchange of heat has a temperature: T (m + M/t_relax) = m T_mix + M/t_relax T_ambient.
+            None => {
+                let relaxing = water_kg / NODE_RELAXATION_S;
+                relaxing / (relaxing + inflow)
+            }
+        }
+    }
+
+    /// Mean temperature of the water that leaves an edge, its upstream node being known.
+    #[inline]
+    pub(super) fn outlet_k(&self, network: &Network, state: &NetworkState, i: usize) -> f64 {
+        let edge = &network.edges[i];
+        let relation = self.relation[i];
+        let mut t_k = relation.constant_k;
+        if relation.of_inlet != 0.0 {
+            t_k += relation.of_inlet * self.t_mean_k[edge.upstream(state.m_flow_kg_s[i]).index()];
+        }
+        if let Some(partner) = edge.partner.filter(|_| relation.of_partner != 0.0) {
+            let other = partner.index();
+            let inlet = network.edges[other].upstream(state.m_flow_kg_s[other]).index();
+            t_k += relation.of_partner * self.t_mean_k[inlet];
+        }
+        t_k
+    }
+
+    /// Orders the nodes so that each comes after those it depends on; kept while nothing turns.
+    pub(super) fn sort_nodes(&mut self, network: &Network, state: &NetworkState) {
+        let mut same = true;
+        for (i, relation) in self.relation.iter().enumerate() {
+            let m = state.m_flow_kg_s[i];
+            let key = u8::from(m > 0.0)
+                | u8::from(m < 0.0) << 1
+                | u8::from(relation.of_inlet != 0.0) << 2
+                | u8::from(relation.of_partner != 0.0) << 3;
+            same &= self.key[i] == key;
+            self.key[i] = key;
+        }
+        if same {
+            return;
+        }
+        self.waiting.fill(0);
+        for (i, edge) in network.edges.iter().enumerate() {
+            let m = state.m_flow_kg_s[i];
+            if m != 0.0 {
+                let relation = self.relation[i];
+                self.waiting[edge.downstream(m).index()] +=
+                    u32::from(relation.of_inlet != 0.0) + u32::from(relation.of_partner != 0.0);
+            }
+        }
+        self.order.clear();
+        self.order.extend(
+            self.waiting.iter().enumerate().filter(|(_, w)| **w == 0).map(|(i, _)| i as u32),
+        );
+        let mut done = 0;
+        while done < self.order.len() {
+            let node = self.order[done] as usize;
+            done += 1;
+            for k in self.first[node] as usize..self.first[node + 1] as usize {
+                let i = self.incident[k] as usize;
+                let (edge, m) = (&network.edges[i], state.m_flow_kg_s[i]);
+                if m == 0.0 || edge.upstream(m).index() != node {
+                    continue;
+                }
+                if self.relation[i].of_inlet != 0.0 {
+                    self.release(edge.downstream(m).index());
+                }
+                if let Some(partner) = edge.partner {
+                    let (other, m_other) = (partner.index(), state.m_flow_kg_s[partner.index()]);
+                    if m_other != 0.0 && self.relation[other].of_partner != 0.0 {
+                        self.release(network.edges[other].downstream(m_other).index());
+                    }
+                }
+            }
+        }
+    }
+
+    pub(super) fn release(&mut self, node: usize) {
+        self.waiting[node] -= 1;
+        if self.waiting[node] == 0 {
+            self.order.push(node as u32);
+        }
+    }
+
+    /// All node temperatures as one linear system.
+    pub(super) fn solve_loops(
+        &mut self,
+        network: &Network,
+        state: &NetworkState,
+        dt_s: Option<f64>,
+    ) -> Result<(), FactorError> {
+        self.lu.values_mut().fill(0.0);
+        for node in 0..network.nodes.len() {
+            self.add_entry(node, node, 1.0);
+            let kept = self.kept_share(network, node, dt_s);
+            let old_k = if dt_s.is_some() { state.t_node_k[node] } else { state.ambient_k };
+            let inflow = self.inflow_kg_s[node];
+            let mixed = if inflow > 0.0 { (1.0 - kept) / inflow } else { 0.0 };
+            self.t_mean_k[node] = kept * old_k + mixed * self.inflow_heat[node];
+        }
+        for (i, edge) in network.edges.iter().enumerate() {
+            let m = state.m_flow_kg_s[i];
+            if m == 0.0 {
+                continue;
+            }
+            let (from, to) = (edge.upstream(m).index(), edge.downstream(m).index());
+            let weight =
+                (1.0 - self.kept_share(network, to, dt_s)) * m.abs() / self.inflow_kg_s[to];
+            let relation = self.relation[i];
+            self.t_mean_k[to] += weight * relation.constant_k;
+            self.add_entry(to, from, -weight * relation.of_inlet);
+            if let Some(partner) = edge.partner {
+                let other = partner.index();
+                let inlet = network.edges[other].upstream(state.m_flow_kg_s[other]).index();
+                self.add_entry(to, inlet, -weight * relation.of_partner);
+            }
+        }
+        self.lu.solve_in_place(&mut self.t_mean_k)
+    }
+
+    pub(super) fn add_entry(&mut self, row: usize, column: usize, value: f64) {
+        if let Some(slot) = self.lu.slot(row, column) {
+            self.lu.values_mut()[slot] += value;
+        }
+    }
+
+    /// Moves the node temperatures to the end of the step; books what crosses the boundary.
+    pub(super) fn advance_nodes(&mut self, network: &Network, state: &mut NetworkState, dt_s: f64) {
+        for (i, edge) in network.edges.iter().enumerate() {
+            let m = state.m_flow_kg_s[i];
+            if m != 0.0 {
+                self.inflow_heat[edge.downstream(m).index()] +=
+                    m.abs() * self.outlet_k(network, state, i);
+            }
+        }
+        for (i, node) in network.nodes.iter().enumerate() {
+            let inflow = self.inflow_kg_s[i];
+            if inflow > 0.0 {
+                let water_kg = node.water_kg(network.medium.density_kg_m3);
+                let (_, end) = volume_shares(inflow * dt_s, water_kg);
+                let mixed_k = self.inflow_heat[i] / inflow;
+                state.t_node_k[i] = mixed_k + (state.t_node_k[i] - mixed_k) * end;
+            }
+        }
+        state.boundary_w = self.boundary_w(network, state);
+    }
+
+    /// Enthalpy flow into the network through boundaries and sources, W.
+    pub(super) fn boundary_w(&self, network: &Network, state: &NetworkState) -> f64 {
+        let mut heat_w = 0.0;
+        for (i, node) in network.nodes.iter().enumerate() {
+            let exchange = state.exchange_kg_s[i];
+            if node.kind != NodeKind::PressureReference && exchange != 0.0 {
+                let t_k = if exchange > 0.0 { state.given_t_k[i] } else { self.t_mean_k[i] };
+                heat_w += exchange * network.medium.enthalpy_j_kg(t_k);
+            }
+        }
+        heat_w
+    }
+}

@@ -1,0 +1,226 @@
+//! Nodes, edges, ports and circuits of a model.
+
+use super::Builder;
+use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::model::EdgeSpec;
+use crate::model_file::NodeEntryKind;
+use anergy_core::ids::{EdgeId, NodeId};
+use anergy_network::elements::ElementParams;
+use anergy_network::graph::{Edge, GraphProblem, Network, Node, NodeKind};
+use std::collections::HashMap;
+use std::ops::Range;
+
+impl Builder<'_> {
+    pub(super) fn nodes(&mut self) -> Vec<Node> {
+        self.model
+            .nodes
+            .iter()
+            .map(|spec| Node {
+                kind: match spec.entry.kind {
+                    NodeEntryKind::Junction => NodeKind::Junction,
+                    NodeEntryKind::PressureBoundary => NodeKind::PressureBoundary,
+                    NodeEntryKind::Source => NodeKind::Source,
+                },
+                elevation_m: spec.entry.elevation_m,
+                volume_m3: spec.entry.volume_m3,
+            })
+            .collect()
+    }
+
+    pub(super) fn references(&mut self, nodes: &mut [Node], node_ids: &HashMap<&str, usize>) {
+        for spec in &self.model.references {
+            let name = spec.entry.node.as_str();
+            let Some(&node) = node_ids.get(name) else {
+                let hint = did_you_mean(name, node_ids.keys().copied());
+                let message = format!("pressure_reference: there is no node \"{name}\"");
+                self.report(message, spec.place.of("node"), hint);
+                continue;
+            };
+            if nodes[node].kind == NodeKind::Junction {
+                nodes[node].kind = NodeKind::PressureReference;
+            } else {
+                let message = format!(
+                    "pressure_reference: node \"{name}\" is a boundary or source, or a reference already"
+                );
+                self.report(message, spec.place.of("node"), None);
+            }
+        }
+    }
+
+    pub(super) fn edges(
+        &mut self,
+        node_ids: &HashMap<&str, usize>,
+        edge_ids: &HashMap<&str, usize>,
+    ) -> Vec<Edge> {
+        let mut edges = Vec::with_capacity(self.model.edges.len());
+        for spec in &self.model.edges {
+            let ends = [("from", &spec.from), ("to", &spec.to)].map(|(field, name)| {
+                let found = node_ids.get(name.as_str()).copied();
+                if found.is_none() {
+                    let hint = did_you_mean(name, node_ids.keys().copied());
+                    let message =
+                        format!("edge \"{}\": {field} names no node: \"{name}\"", spec.id);
+                    self.report(message, spec.place.of(field), hint);
+                }
+                found
+            });
+            if spec.from == spec.to && ends[0].is_some() {
+                let message = format!("edge \"{}\" begins and ends at \"{}\"", spec.id, spec.to);
+                self.report(message, spec.place.span.clone(), None);
+            }
+            let partner = self.partner(spec, edge_ids);
+            match spec.params.build(&self.model.medium) {
+                Err(error) => {
+                    let span = error
+                        .field()
+                        .map_or_else(|| spec.place.span.clone(), |field| spec.place.of(field));
+                    let message = format!("edge \"{}\" ({}): {error}", spec.id, spec.params.kind());
+                    self.report(message, span, None);
+                }
+                Ok(element) => {
+                    if let [Some(from), Some(to)] = ends {
+                        edges.push(Edge {
+                            from: NodeId::from_index(from),
+                            to: NodeId::from_index(to),
+                            element,
+                            loss_factor: spec.loss_factor,
+                            partner: partner.map(|(edge, _)| EdgeId::from_index(edge)),
+                            leads_partner: partner.is_some_and(|(_, leads)| leads),
+                        });
+                    }
+                }
+            }
+        }
+        edges
+    }
+
+    /// The other side of a heat exchanger, and whether this side's UA counts.
+    pub(super) fn partner(
+        &mut self,
+        spec: &EdgeSpec,
+        edge_ids: &HashMap<&str, usize>,
+    ) -> Option<(usize, bool)> {
+        let ElementParams::HeatExchanger(exchanger) = &spec.params else { return None };
+        if let Some(name) = &exchanger.partner {
+            let Some(&other) = edge_ids.get(name.as_str()) else {
+                let hint = did_you_mean(name, edge_ids.keys().copied());
+                let message = format!("edge \"{}\": partner names no edge: \"{name}\"", spec.id);
+                self.report(message, spec.place.of("partner"), hint);
+                return None;
+            };
+            let other_params = &self.model.edges[other].params;
+            let mutual = match other_params {
+                ElementParams::HeatExchanger(other) => other.partner.is_some(),
+                _ => true,
+            };
+            if mutual || *name == spec.id {
+                let message = format!(
+                    "edge \"{}\": partner \"{name}\" must be another heat_exchanger without a partner \
+                     of its own",
+                    spec.id
+                );
+                self.report(message, spec.place.of("partner"), None);
+                return None;
+            }
+            return Some((other, true));
+        }
+        let lead = self.model.edges.iter().position(|edge| {
+            matches!(&edge.params, ElementParams::HeatExchanger(x)
+                if x.partner.as_deref() == Some(spec.id.as_str()))
+        });
+        lead.map(|lead| (lead, false))
+    }
+
+    pub(super) fn ports(&mut self, edge_ids: &HashMap<&str, usize>) -> Vec<EdgeId> {
+        let mut taken: HashMap<usize, &str> = HashMap::new();
+        let mut ports = Vec::new();
+        for spec in &self.model.units {
+            let Some(&edge) = edge_ids.get(spec.port.as_str()) else {
+                let hint = did_you_mean(&spec.port, edge_ids.keys().copied());
+                let message =
+                    format!("unit \"{}\": port names no edge: \"{}\"", spec.id, spec.port);
+                self.report(message, spec.place.of("port"), hint);
+                continue;
+            };
+            if let Some(before) = taken.insert(edge, &spec.id) {
+                let message = format!(
+                    "units \"{before}\" and \"{}\" stand on the same interface \"{}\"",
+                    spec.id, spec.port
+                );
+                let hint = "give the site a second station, or one of the units another one";
+                self.report(message, spec.place.span.clone(), Some(hint.into()));
+            }
+            let params = &self.model.edges[edge].params;
+            let fits =
+                matches!(params, ElementParams::HeatExchanger(_) | ElementParams::FlowSource(_));
+            if !fits {
+                let message =
+                    format!("unit \"{}\": a {} cannot carry a unit", spec.id, params.kind());
+                let hint = "a unit stands behind a heat_exchanger or on a flow_source";
+                self.report(message, spec.place.of("port"), Some(hint.into()));
+            }
+            ports.push(EdgeId::from_index(edge));
+        }
+        ports
+    }
+
+    pub(super) fn check_graph(&mut self, network: &Network) {
+        let name = |id: &NodeId| self.model.nodes[id.index()].entry.id.clone();
+        let mut found = Vec::new();
+        for problem in network.problems() {
+            found.push(match problem {
+                GraphProblem::NoPressureReference { circuit } => {
+                    let names: Vec<String> = circuit.iter().take(4).map(name).collect();
+                    let more = circuit.len().saturating_sub(4);
+                    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                    Diagnostic::new(
+                        format!(
+                            "the circuit of {}{more} has no pressure reference",
+                            names.join(", ")
+                        ),
+                        self.model.nodes[circuit[0].index()].place.span.clone(),
+                    )
+                    .with_hint(format!("add [[pressure_reference]] with node = \"{}\"", names[0]))
+                }
+                GraphProblem::SeveralReferences { references } => {
+                    let names: Vec<String> = references.iter().map(name).collect();
+                    Diagnostic::new(
+                        format!(
+                            "one circuit has {} pressure references: {}",
+                            names.len(),
+                            names.join(", ")
+                        ),
+                        self.reference_place(&names[1]),
+                    )
+                    .with_hint(
+                        "keep one, or make open ends nodes with kind = \"pressure_boundary\"",
+                    )
+                }
+                GraphProblem::ReferenceAndBoundary { reference, boundary } => Diagnostic::new(
+                    format!(
+                        "one circuit has the pressure reference \"{}\", which exchanges no water, and \
+                         the pressure boundary \"{}\", which does",
+                        name(&reference),
+                        name(&boundary)
+                    ),
+                    self.reference_place(&name(&reference)),
+                )
+                .with_hint("keep one of them"),
+                GraphProblem::IdealLoop { edge } => Diagnostic::new(
+                    format!(
+                        "edge \"{}\" closes a loop of pressure sources and fixed pressures alone",
+                        self.model.edges[edge.index()].id
+                    ),
+                    self.model.edges[edge.index()].place.span.clone(),
+                )
+                .with_hint("put a resistance into the loop"),
+            });
+        }
+        self.problems.extend(found);
+    }
+
+    pub(super) fn reference_place(&self, node: &str) -> Option<Range<usize>> {
+        let spec = self.model.references.iter().find(|spec| spec.entry.node == node)?;
+        spec.place.of("node")
+    }
+}

@@ -1,0 +1,312 @@
+//! Signals, and who writes them: units, schedules, series, controllers.
+
+use super::Builder;
+use crate::diagnostic::did_you_mean;
+use crate::drivers::Driver;
+use crate::model::{Model, Place};
+use crate::model_file::NodeEntryKind;
+use crate::plan::{NodeInputs, Plan, PlannedController, PlannedUnit};
+use anergy_core::clock::Time;
+use anergy_core::ids::SignalId;
+use anergy_core::signal::{SignalSpec, SignalTable};
+use anergy_core::units::Unit;
+use anergy_network::elements::{Element, ElementParams};
+use anergy_network::graph::Network;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Who writes a signal.
+pub(super) struct Writer {
+    pub what: String,
+    pub span: Option<Range<usize>>,
+}
+
+impl Builder<'_> {
+    pub(super) fn node_signals(&mut self, signals: &mut SignalTable) -> Vec<NodeInputs> {
+        let mut inputs = Vec::new();
+        for (node, spec) in self.model.nodes.iter().enumerate() {
+            let entry = &spec.entry;
+            let held = self.model.references.iter().find(|r| r.entry.node == entry.id);
+            let pressure = held.map(|r| r.entry.pressure_pa).or(entry.pressure_pa);
+            let mut add = |quantity: &str, unit: &'static str, value: f64| {
+                signals.add(free_signal(&format!("{}.{quantity}", entry.id), unit, value))
+            };
+            let exchanges = entry.kind != NodeEntryKind::Junction;
+            if held.is_some() || exchanges {
+                let of_kind = |kind| entry.kind == kind;
+                let p_pa = (held.is_some() || of_kind(NodeEntryKind::PressureBoundary))
+                    .then(|| add("pressure_pa", "pa", pressure.unwrap_or(0.0)));
+                let m_flow_kg_s = of_kind(NodeEntryKind::Source)
+                    .then(|| add("m_flow_kg_s", "kg_s", entry.m_flow_kg_s.unwrap_or(0.0)));
+                let t_k = exchanges.then(|| {
+                    let value = entry.temperature_k.unwrap_or(self.model.run.initial_k);
+                    signals.add(temperature_signal(&format!("{}.temperature_k", entry.id), value))
+                });
+                inputs.push(NodeInputs { node, p_pa, m_flow_kg_s, t_k });
+            }
+        }
+        inputs
+    }
+
+    pub(super) fn surroundings(
+        &mut self,
+        signals: &mut SignalTable,
+        ground: SignalId,
+    ) -> Vec<SignalId> {
+        self.model
+            .edges
+            .iter()
+            .map(|spec| match &spec.params {
+                ElementParams::Pipe(pipe) => pipe.surroundings_k.map_or(ground, |t_k| {
+                    signals.add(temperature_signal(&format!("{}.surroundings_k", spec.id), t_k))
+                }),
+                _ => ground,
+            })
+            .collect()
+    }
+
+    pub(super) fn units(
+        &mut self,
+        edge_ids: &HashMap<&str, usize>,
+        network: &Network,
+        commands: &[Option<SignalId>],
+        signals: &mut SignalTable,
+        writers: &mut HashMap<SignalId, Writer>,
+    ) -> Vec<PlannedUnit> {
+        let mut units = Vec::new();
+        let (mut state_len, mut output_len) = (0, 0);
+        for (port, spec) in self.model.units.iter().enumerate() {
+            let equipment = match spec.params.build(&self.model.medium) {
+                Ok(equipment) => equipment,
+                Err(error) => {
+                    let span = error
+                        .field()
+                        .map_or_else(|| spec.place.span.clone(), |field| spec.place.of(field));
+                    let message = format!("unit \"{}\" ({}): {error}", spec.id, spec.params.kind());
+                    self.report(message, span, None);
+                    continue;
+                }
+            };
+            let Some(&edge) = edge_ids.get(spec.port.as_str()) else { continue };
+            let first = signals.specs().len();
+            for input in equipment.inputs() {
+                signals.add(SignalSpec {
+                    name: format!("{}.{}", spec.id, input.name),
+                    unit: input.unit,
+                    initial: input.initial,
+                    min: input.min,
+                    max: f64::INFINITY,
+                });
+            }
+            let imposes_flow = network
+                .edges
+                .get(edge)
+                .filter(|edge| matches!(edge.element, Element::FlowSource(_)))
+                .and_then(|_| commands[edge]);
+            if let Some(command) = imposes_flow {
+                let what = format!("unit \"{}\"", spec.id);
+                writers.insert(command, Writer { what, span: spec.place.span.clone() });
+            }
+            let states = equipment.initial_state(self.model.run.initial_k).len();
+            let outputs = equipment.outputs().len();
+            units.push(PlannedUnit {
+                name: spec.id.clone(),
+                equipment,
+                port,
+                imposes_flow,
+                inputs: first..signals.specs().len(),
+                state: state_len..state_len + states,
+                outputs: output_len..output_len + outputs,
+            });
+            state_len += states;
+            output_len += outputs;
+        }
+        units
+    }
+
+    pub(super) fn drivers(
+        &mut self,
+        signals: &SignalTable,
+        writers: &mut HashMap<SignalId, Writer>,
+    ) -> Vec<Driver> {
+        let mut drivers = Vec::new();
+        for spec in &self.model.drivers {
+            let Some(signal) = signals.find(&spec.signal) else {
+                let names = signals.specs().iter().map(|signal| signal.name.as_str());
+                let hint = did_you_mean(&spec.signal, names)
+                    .unwrap_or_else(|| "`anergy check --signals` lists all signals".into());
+                let message = format!("{}: there is no such signal", spec.source);
+                self.report(message, spec.place.of("signal"), Some(hint));
+                continue;
+            };
+            self.claim(writers, signal, signals, &spec.source, spec.place.of("signal"));
+            let known = signals.spec(signal);
+            let Some(unit) =
+                self.driver_unit(spec.unit.as_deref(), known, &spec.source, &spec.place)
+            else {
+                continue;
+            };
+            let values: Vec<f64> = spec
+                .values
+                .iter()
+                .map(|value| unit.map_or(*value, |unit| unit.to_si(*value)))
+                .collect();
+            if let Some(i) = values.iter().position(|v| !(known.min..=known.max).contains(v)) {
+                let message = format!(
+                    "{}: value {} at {} s is outside {} to {}",
+                    spec.source, spec.values[i], spec.times_s[i], known.min, known.max
+                );
+                let span =
+                    spec.place.of(if spec.place.has("points") { "points" } else { "column" });
+                self.report(message, span, None);
+                continue;
+            }
+            let times: Option<Vec<Time>> = spec.times_s.iter().map(|s| Time::from_s(*s)).collect();
+            let Some(times) = times else {
+                let message = format!("{}: a time is beyond what can be simulated", spec.source);
+                self.report(message, spec.place.span.clone(), None);
+                continue;
+            };
+            drivers.push(Driver { signal, interpolation: spec.interpolation, times, values });
+        }
+        drivers
+    }
+
+    /// A signal has one writer.
+    pub(super) fn claim(
+        &mut self,
+        writers: &mut HashMap<SignalId, Writer>,
+        signal: SignalId,
+        signals: &SignalTable,
+        what: &str,
+        span: Option<Range<usize>>,
+    ) {
+        let writer = Writer { what: what.to_owned(), span: span.clone() };
+        if let Some(before) = writers.insert(signal, writer) {
+            let name = &signals.spec(signal).name;
+            let message = format!("signal \"{name}\" is driven by {} and by {what}", before.what);
+            self.report(message, span.or(before.span), Some("a signal has one driver".into()));
+        }
+    }
+
+    /// The unit a driver's values are written in; the outer `None` after a report.
+    pub(super) fn driver_unit(
+        &mut self,
+        unit: Option<&str>,
+        signal: &SignalSpec,
+        source: &str,
+        place: &Place,
+    ) -> Option<Option<Unit>> {
+        let Some(word) = unit else { return Some(None) };
+        let suffix = word.trim().to_lowercase().replace('/', "_").replace('%', "percent");
+        let si = if signal.unit.is_empty() { "1" } else { signal.unit };
+        if suffix == si {
+            return Some(None);
+        }
+        let found = Unit::find(&suffix);
+        if let Some(unit) = found.filter(|unit| unit.si == signal.unit) {
+            return Some(Some(unit));
+        }
+        let possible: Vec<&str> = anergy_core::units::UNITS
+            .iter()
+            .filter(|unit| unit.si == signal.unit)
+            .map(|unit| unit.suffix)
+            .chain(std::iter::once(si))
+            .collect();
+        let message = format!("{source}: unit \"{word}\" does not fit the signal");
+        let hint = format!("possible units: {}", possible.join(", "));
+        self.report(message, place.of("unit"), Some(hint));
+        None
+    }
+
+    pub(super) fn controllers(
+        &mut self,
+        plan: &mut Plan,
+        set_points: &[SignalId],
+        writers: &mut HashMap<SignalId, Writer>,
+    ) {
+        let mut state_len = 0;
+        for (spec, set_point) in self.model.controllers.iter().zip(set_points) {
+            let what = format!("controller \"{}\"", spec.id);
+            let controller = spec.params.build(&());
+            if let Err(error) = &controller {
+                let span = error
+                    .field()
+                    .map_or_else(|| spec.place.span.clone(), |field| spec.place.of(field));
+                self.report(format!("{what}: {error}"), span, None);
+            }
+            let measured = plan.channels.iter().position(|c| c.name == spec.measures);
+            if measured.is_none() {
+                let hint =
+                    did_you_mean(&spec.measures, plan.channels.iter().map(|c| c.name.as_str()));
+                let message =
+                    format!("{what} measures \"{}\", which does not exist", spec.measures);
+                self.report(message, spec.place.span.clone(), hint);
+            }
+            let acts_on = plan.signals.find(&spec.acts_on);
+            match acts_on {
+                None => {
+                    let names = plan.signals.specs().iter().map(|signal| signal.name.as_str());
+                    let hint = did_you_mean(&spec.acts_on, names);
+                    let message =
+                        format!("{what} acts on \"{}\", which does not exist", spec.acts_on);
+                    self.report(message, spec.place.span.clone(), hint);
+                }
+                Some(signal) => {
+                    self.claim(writers, signal, &plan.signals, &what, spec.place.span.clone());
+                }
+            }
+            let (Ok(controller), Some(measured), Some(acts_on)) = (controller, measured, acts_on)
+            else {
+                continue;
+            };
+            let state = controller.initial_state();
+            let interval = Time::from_s(controller.interval_s()).unwrap_or(Time::ZERO);
+            plan.controllers.push(PlannedController {
+                name: spec.id.clone(),
+                controller,
+                measures: plan.sources[measured],
+                set_point: *set_point,
+                acts_on,
+                interval,
+                state: state_len..state_len + state.len(),
+            });
+            state_len += state.len();
+            plan.initial.controller_states.extend(state);
+            plan.initial.next_tick.push(Time::ZERO);
+            plan.initial.last_tick.push(Time::ZERO);
+        }
+    }
+}
+
+/// A command signal for every element with an actuator.
+pub(super) fn edge_signals(
+    model: &Model,
+    network: &Network,
+    signals: &mut SignalTable,
+) -> Vec<Option<SignalId>> {
+    model
+        .edges
+        .iter()
+        .zip(&network.edges)
+        .map(|(spec, edge)| {
+            edge.element.actuator().map(|actuator| {
+                signals.add(SignalSpec {
+                    name: format!("{}.{}", spec.id, actuator.command),
+                    unit: actuator.unit,
+                    initial: actuator.initial_command,
+                    min: actuator.min,
+                    max: actuator.max,
+                })
+            })
+        })
+        .collect()
+}
+
+pub(super) fn free_signal(name: &str, unit: &'static str, initial: f64) -> SignalSpec {
+    SignalSpec { name: name.to_owned(), unit, initial, min: f64::NEG_INFINITY, max: f64::INFINITY }
+}
+
+pub(super) fn temperature_signal(name: &str, initial: f64) -> SignalSpec {
+    SignalSpec { name: name.to_owned(), unit: "k", initial, min: 173.15, max: 473.15 }
+}

@@ -1,0 +1,143 @@
+//! The plan of a simulation: everything that does not change during a run, by id.
+
+use crate::channels::Source;
+use crate::drivers::Driver;
+use crate::state::State;
+use anergy_control::controllers::LocalController;
+use anergy_core::clock::Time;
+use anergy_core::ids::SignalId;
+use anergy_core::recorder::{Channel, NetworkMap};
+use anergy_core::signal::SignalTable;
+use anergy_network::graph::Network;
+use anergy_network::interface::Station;
+use anergy_network::state::NetworkState;
+use anergy_prosumer::equipment::Equipment;
+use std::ops::Range;
+
+/// A unit with its places in the flat state.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedUnit {
+    pub name: String,
+    pub equipment: Equipment,
+    /// Port of the network.
+    pub port: usize,
+    /// The command of its edge, where its request is that edge's flow (and not its own circulation).
+    pub imposes_flow: Option<SignalId>,
+    pub inputs: Range<usize>,
+    pub state: Range<usize>,
+    pub outputs: Range<usize>,
+}
+
+/// A controller with its places in the flat state.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedController {
+    pub name: String,
+    pub controller: LocalController,
+    pub measures: Source,
+    pub set_point: SignalId,
+    pub acts_on: SignalId,
+    pub interval: Time,
+    pub state: Range<usize>,
+}
+
+/// What a boundary value of the network is driven by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NodeInputs {
+    pub node: usize,
+    pub p_pa: Option<SignalId>,
+    pub m_flow_kg_s: Option<SignalId>,
+    pub t_k: Option<SignalId>,
+}
+
+/// Everything that does not change during a run.
+#[derive(Debug)]
+pub struct Plan {
+    pub(crate) network: Network,
+    pub(crate) node_names: Vec<String>,
+    pub(crate) edge_names: Vec<String>,
+    pub(crate) station_names: Vec<String>,
+    pub(crate) stations: Vec<Station>,
+    pub(crate) units: Vec<PlannedUnit>,
+    pub(crate) controllers: Vec<PlannedController>,
+    pub(crate) drivers: Vec<Driver>,
+    pub(crate) signals: SignalTable,
+    /// Command signal of each edge.
+    pub(crate) commands: Vec<Option<SignalId>>,
+    pub(crate) node_inputs: Vec<NodeInputs>,
+    pub(crate) ground: SignalId,
+    /// Signal with the temperature around each edge.
+    pub(crate) surroundings: Vec<SignalId>,
+    pub(crate) initial: State,
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) sources: Vec<Source>,
+    pub(crate) map: NetworkMap,
+    pub(crate) model_name: String,
+    pub(crate) model_text: String,
+    pub(crate) start_unix_ns: i64,
+    pub(crate) step: Time,
+    pub(crate) record: Time,
+    pub(crate) until: Time,
+}
+
+impl Plan {
+    pub(crate) fn electric_w(&self, state: &NetworkState, edge: usize) -> f64 {
+        let edge_state = state.edge_state(&self.network, edge);
+        self.network.edges[edge]
+            .element
+            .electric_power_w(state.m_flow_kg_s[edge], &edge_state)
+            .unwrap_or(0.0)
+    }
+
+    pub(crate) fn total_electric_w(&self, state: &NetworkState) -> f64 {
+        (0..self.network.edges.len()).map(|edge| self.electric_w(state, edge)).sum()
+    }
+
+    pub(crate) fn total_units_w(&self, state: &NetworkState) -> f64 {
+        let cp = self.network.medium.heat_capacity_j_kg_k;
+        state.port_flows.iter().map(|f| f.m_flow_kg_s.abs() * cp * (f.t_out_k - f.t_in_k)).sum()
+    }
+
+    pub(crate) fn total_loss_w(&self, state: &NetworkState) -> f64 {
+        state.q_loss_w.iter().sum::<f64>() + state.q_loss_nodes_w
+    }
+
+    /// Largest time step.
+    pub fn step(&self) -> Time {
+        self.step
+    }
+
+    /// Time between recorded rows.
+    pub fn record_interval(&self) -> Time {
+        self.record
+    }
+
+    /// End of the run.
+    pub fn until(&self) -> Time {
+        self.until
+    }
+
+    /// The recorded channels.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// The input signals.
+    pub fn signals(&self) -> &SignalTable {
+        &self.signals
+    }
+
+    /// The network.
+    pub fn network(&self) -> &Network {
+        &self.network
+    }
+
+    /// Names of the nodes, in the order of their ids.
+    pub fn node_names(&self) -> &[String] {
+        &self.node_names
+    }
+
+    /// Names of the edges, in the order of their ids.
+    pub fn edge_names(&self) -> &[String] {
+        &self.edge_names
+    }
+}

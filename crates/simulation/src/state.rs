@@ -1,0 +1,46 @@
+//! The state of a simulation: plain data, so that a clone or its bytes are a snapshot.
+
+use crate::error::RunError;
+use anergy_core::clock::Time;
+use anergy_network::interface::StationState;
+use anergy_network::state::NetworkState;
+use serde::{Deserialize, Serialize};
+
+/// Everything that changes during a run: plain data. A clone, or its bytes, is a snapshot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    pub(crate) time: Time,
+    pub(crate) network: NetworkState,
+    pub(crate) signals: Vec<f64>,
+    /// Signals that the user has taken over from schedules and controllers.
+    pub(crate) taken_over: Vec<bool>,
+    pub(crate) unit_states: Vec<f64>,
+    pub(crate) unit_outputs: Vec<f64>,
+    pub(crate) stations: Vec<StationState>,
+    pub(crate) station_heat_j: Vec<f64>,
+    pub(crate) controller_states: Vec<f64>,
+    pub(crate) next_tick: Vec<Time>,
+    pub(crate) last_tick: Vec<Time>,
+    pub(crate) electric_j: f64,
+    pub(crate) units_j: f64,
+    pub(crate) loss_j: f64,
+    pub(crate) boundary_j: f64,
+    pub(crate) pump_hydraulic_j: f64,
+    pub(crate) dissipated_j: f64,
+    pub(crate) initial_stored_j: f64,
+    pub(crate) largest_mass_residual_kg_s: f64,
+    pub(crate) steps: u64,
+    pub(crate) solves: u64,
+    pub(crate) iterations: u64,
+}
+
+impl State {
+    /// The state as bytes.
+    ///
+    /// # Errors
+    /// [`RunError::Snapshot`] when it cannot be encoded.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, RunError> {
+        postcard::to_allocvec(self)
+            .map_err(|error| RunError::Snapshot { problem: error.to_string() })
+    }
+}

@@ -1,0 +1,236 @@
+//! Random parameters of every hydraulic element, within the range of real plants.
+//!
+//! A newly registered kind needs a line in [`params`] (or the tests that loop over all kinds fail) and
+//! in [`nature`] (or nothing compiles).
+
+use anergy_network::elements::ElementParams;
+use anergy_network::elements::check_valve::CheckValveParams;
+use anergy_network::elements::flow_source::FlowSourceParams;
+use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
+use anergy_network::elements::pipe::PipeParams;
+use anergy_network::elements::pressure_source::PressureSourceParams;
+use anergy_network::elements::pump::PumpParams;
+use anergy_network::elements::resistance::ResistanceParams;
+use anergy_network::elements::valve::{ValveCharacteristic, ValveCommand, ValveParams};
+use anergy_network::friction::{Correlation, Transition};
+use proptest::option;
+use proptest::prelude::*;
+
+/// What becomes of an element when its ends are exchanged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nature {
+    /// The same law: the flow from port a to port b changes its sign.
+    Symmetric,
+    /// Another law, or a cause of flow.
+    Directed,
+}
+
+/// What becomes of an element when its ends are exchanged.
+pub fn nature(params: &ElementParams) -> Nature {
+    match params {
+        ElementParams::Pipe(_)
+        | ElementParams::Valve(_)
+        | ElementParams::Resistance(_)
+        | ElementParams::HeatExchanger(_) => Nature::Symmetric,
+        ElementParams::Pump(_)
+        | ElementParams::CheckValve(_)
+        | ElementParams::FlowSource(_)
+        | ElementParams::PressureSource(_) => Nature::Directed,
+    }
+}
+
+/// Random parameters of a kind.
+///
+/// # Panics
+/// For a kind that has no line here.
+pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
+    match kind {
+        "pipe" => pipe().prop_map(ElementParams::Pipe).boxed(),
+        "pump" => {
+            prop_oneof![quadratic_pump(), table_pump()].prop_map(ElementParams::Pump).boxed()
+        }
+        "valve" => valve().prop_map(ElementParams::Valve).boxed(),
+        "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
+        "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
+        "heat_exchanger" => heat_exchanger().prop_map(ElementParams::HeatExchanger).boxed(),
+        "flow_source" => flow_source().prop_map(ElementParams::FlowSource).boxed(),
+        "pressure_source" => (-5e5..5e5)
+            .prop_map(|head_pa| ElementParams::PressureSource(PressureSourceParams { head_pa }))
+            .boxed(),
+        other => panic!("tests/src/samples.rs has no sample of the element \"{other}\""),
+    }
+}
+
+/// Numbers of all magnitudes between two positive ones.
+pub fn logarithmic(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
+    (low.ln()..high.ln()).prop_map(f64::exp)
+}
+
+fn pipe() -> impl Strategy<Value = PipeParams> {
+    let law = (
+        prop_oneof![
+            Just(Correlation::Haaland),
+            Just(Correlation::Colebrook),
+            Just(Correlation::SwameeJain)
+        ],
+        prop_oneof![Just(Transition::Cubic), Just(Transition::Linear)],
+        option::of(0.05..3.0),
+        0.005..0.5,
+    );
+    let heat = (option::of(0.5..10.0), option::of(263.0..303.0), option::of(275.0..370.0));
+    let wall = prop_oneof![Just(0.0), logarithmic(1e-6, 0.05)];
+    let zeta = prop_oneof![Just(0.0), 0.1..50.0];
+    (logarithmic(0.1, 5000.0), logarithmic(0.005, 1.2), wall, zeta, law, heat).prop_map(
+        |(length_m, inner_diameter_m, wall, zeta, law, heat)| PipeParams {
+            length_m,
+            inner_diameter_m,
+            roughness_m: wall * inner_diameter_m,
+            zeta,
+            friction: law.0,
+            transition: law.1,
+            fixed_velocity_m_s: law.2,
+            delta_m: law.3,
+            insulation_resistance_k_m_w: heat.0,
+            surroundings_k: heat.1,
+            initial_k: heat.2,
+        },
+    )
+}
+
+fn quadratic_pump() -> impl Strategy<Value = PumpParams> {
+    (logarithmic(1e3, 2e6), logarithmic(1e-5, 0.3), drive()).prop_map(|(head, flow, drive)| {
+        PumpParams { head_max_pa: Some(head), free_flow_m3_s: Some(flow), ..drive }
+    })
+}
+
+/// A curve of a catalogue: flat at first, steeper with the flow, but with points read off by eye.
+fn table_pump() -> impl Strategy<Value = PumpParams> {
+    let steps = prop::collection::vec((0.2..1.0, 0.02..1.0), 1..8);
+    let curve = (logarithmic(1e3, 2e6), logarithmic(1e-5, 0.3), steps, 0.0..0.9);
+    (curve, drive()).prop_map(|((head_max, flow_max, steps, head_at_end), drive)| {
+        let whole = steps.iter().fold((0.0, 0.0), |sum, step| (sum.0 + step.0, sum.1 + step.1));
+        let (mut v_flow, mut head) = (vec![0.0], vec![head_max]);
+        let (mut v_sum, mut head_sum) = (0.0, 0.0);
+        for (v_step, head_step) in steps {
+            (v_sum, head_sum) = (v_sum + v_step, head_sum + head_step);
+            v_flow.push(flow_max * v_sum / whole.0);
+            head.push(head_max * (1.0 - (1.0 - head_at_end) * head_sum / whole.1));
+        }
+        PumpParams {
+            head_max_pa: None,
+            free_flow_m3_s: None,
+            curve_v_flow_m3_s: v_flow,
+            curve_head_pa: head,
+            ..drive
+        }
+    })
+}
+
+/// The fields of a pump besides its curve.
+fn drive() -> impl Strategy<Value = PumpParams> {
+    let numbers = (0.0..1.0, 0.0..0.2, 0.0..30.0, 0.1..0.9, 0.0..20.0, 0.005..0.1);
+    numbers.prop_map(|(speed, speed_min, rise_time_s, efficiency, standby_w, delta_m)| PumpParams {
+        speed,
+        initial_speed: 1.0 - speed,
+        speed_min,
+        rise_time_s,
+        efficiency_hydraulic: efficiency,
+        efficiency_motor: efficiency,
+        standby_w,
+        delta_m,
+        ..PumpParams::default()
+    })
+}
+
+fn valve() -> impl Strategy<Value = ValveParams> {
+    let curve = prop_oneof![
+        (2.0..100.0, 0.0..0.95).prop_map(|(rangeability, share): (f64, f64)| (
+            ValveCharacteristic::EqualPercentage,
+            rangeability,
+            share * rangeability.powf(-0.99)
+        )),
+        (0.0..0.5).prop_map(|leakage| (ValveCharacteristic::Linear, 50.0, leakage)),
+    ];
+    let tight = prop::bool::weighted(0.2);
+    let nominal = option::of(logarithmic(1e-3, 100.0));
+    let numbers = (0.0..1.0, any::<bool>(), 0.0..120.0, nominal, 0.005..0.3);
+    (logarithmic(0.1, 1000.0), curve, tight, numbers).prop_map(|(kvs_m3_h, curve, tight, n)| {
+        let (command, by_kappa, stroke_time_s, m_flow_nominal_kg_s, delta_m) = n;
+        ValveParams {
+            kvs_m3_h,
+            characteristic: curve.0,
+            rangeability: curve.1,
+            leakage: if tight { 0.0 } else { curve.2 },
+            command: if by_kappa { ValveCommand::Kappa } else { ValveCommand::Opening },
+            opening: (!by_kappa).then_some(command),
+            kappa: by_kappa.then_some(command),
+            initial_opening: None,
+            stroke_time_s,
+            m_flow_nominal_kg_s,
+            delta_m,
+        }
+    })
+}
+
+fn check_valve() -> impl Strategy<Value = CheckValveParams> {
+    (logarithmic(0.1, 1000.0), logarithmic(1e-5, 0.5), logarithmic(0.01, 100.0), 0.005..0.3)
+        .prop_map(|(kvs_m3_h, leakage, m_flow_nominal_kg_s, delta_m)| CheckValveParams {
+            kvs_m3_h,
+            leakage,
+            m_flow_nominal_kg_s,
+            delta_m,
+        })
+}
+
+fn resistance() -> impl Strategy<Value = ResistanceParams> {
+    let point = (logarithmic(10.0, 1e6), logarithmic(1e-3, 1e3), 0.005..0.5).prop_map(
+        |(dp_pa, m_flow_kg_s, delta_m)| ResistanceParams {
+            dp_nominal_pa: Some(dp_pa),
+            m_flow_nominal_kg_s: Some(m_flow_kg_s),
+            kv_m3_h: None,
+            delta_m,
+        },
+    );
+    let kv = (logarithmic(0.1, 1000.0), option::of(logarithmic(1e-3, 1e3)), 0.005..0.5).prop_map(
+        |(kv_m3_h, m_flow_nominal_kg_s, delta_m)| ResistanceParams {
+            dp_nominal_pa: None,
+            m_flow_nominal_kg_s,
+            kv_m3_h: Some(kv_m3_h),
+            delta_m,
+        },
+    );
+    prop_oneof![point, kv]
+}
+
+fn heat_exchanger() -> impl Strategy<Value = HeatExchangerParams> {
+    let hydraulic = (logarithmic(100.0, 2e5), logarithmic(1e-2, 100.0), 0.005..0.5);
+    let thermal = (
+        option::of(logarithmic(1e-2, 100.0)),
+        logarithmic(10.0, 1e6),
+        prop_oneof![Just(0.0), 0.3..1.0],
+        any::<bool>(),
+        prop_oneof![Just(0.0), 1e-4..0.1],
+    );
+    (hydraulic, thermal).prop_map(|(h, (secondary, ua_w_k, flow_exponent, counter, volume_m3))| {
+        HeatExchangerParams {
+            dp_nominal_pa: h.0,
+            m_flow_nominal_kg_s: h.1,
+            m_flow_nominal_secondary_kg_s: secondary,
+            ua_w_k,
+            flow_exponent,
+            arrangement: if counter { Arrangement::CounterFlow } else { Arrangement::ParallelFlow },
+            equal_capacity_band: 1e-6,
+            volume_m3,
+            delta_m: h.2,
+            partner: None,
+        }
+    })
+}
+
+fn flow_source() -> impl Strategy<Value = FlowSourceParams> {
+    prop_oneof![
+        (-2.0..2.0).prop_map(|m| FlowSourceParams { m_flow_kg_s: Some(m), v_flow_m3_s: None }),
+        (-2e-3..2e-3).prop_map(|v| FlowSourceParams { m_flow_kg_s: None, v_flow_m3_s: Some(v) }),
+        Just(FlowSourceParams::default()),
+    ]
+}
