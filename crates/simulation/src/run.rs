@@ -91,8 +91,6 @@ fn header(plan: &crate::plan::Plan, until: Time, step: Time, record: Time) -> Ru
             setting("record", record.to_string()),
             setting("density_kg_m3", plan.network.medium.density_kg_m3.to_string()),
             setting("heat_capacity_j_kg_k", plan.network.medium.heat_capacity_j_kg_k.to_string()),
-            setting("nodes", plan.network.nodes.len().to_string()),
-            setting("edges", plan.network.edges.len().to_string()),
         ],
         map: plan.map.clone(),
     }

@@ -1,0 +1,167 @@
+//! The program as a user meets it: files, exit codes, interruptions, full disks.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const MODEL: &str = include_str!("../../../examples/three-houses/model.toml");
+
+fn anergy(arguments: &[&str], dir: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_anergy"))
+        .args(arguments)
+        .current_dir(dir)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn with_model(model: &str) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("model.toml"), model).unwrap();
+    dir
+}
+
+#[test]
+fn demo_shows_the_blocking_and_leaves_three_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let output = anergy(&["demo", "--out", "here"], dir.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let shown = text(&output.stdout);
+    for expected in ["0.781", "7.920", "3.335", "4.322", "sf1.station is blocked", "is free again"]
+    {
+        assert!(shown.contains(expected), "{expected} is not in\n{shown}");
+    }
+    let file = |name: &str| std::fs::read(dir.path().join("here").join(name)).unwrap();
+    assert!(text(&file("report.html")).contains("data-anergy-report"));
+    let summary: serde_json::Value = serde_json::from_slice(&file("summary.json")).unwrap();
+    assert_eq!(summary["interrupted"], false);
+    assert!(!file("results.mcap").is_empty());
+    let again = anergy(&["report", "here/results.mcap", "--out", "again.html"], dir.path());
+    assert!(again.status.success(), "{}", text(&again.stderr));
+    let report = std::fs::read(dir.path().join("again.html")).unwrap();
+    assert_eq!(report, file("report.html"), "the report of the file is that of the run");
+}
+
+#[test]
+fn solve_writes_the_tables_that_scripts_read() {
+    let dir = with_model(MODEL);
+    let output = anergy(&["solve", "model.toml", "--json", "steady.json"], dir.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let json = std::fs::read(dir.path().join("steady.json")).unwrap();
+    let steady: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let edges = steady["edges"].as_array().unwrap();
+    let pump = edges.iter().find(|edge| edge["id"] == "sf1.feed_in_pump").unwrap();
+    assert_eq!(pump["kind"], "pump");
+    assert!((pump["m_flow_kg_s"].as_f64().unwrap() * 60.0 - 0.781).abs() < 1e-3);
+    for field in ["id", "p_pa", "t_k", "elevation_m"] {
+        assert!(!steady["nodes"][0][field].is_null(), "{field}");
+    }
+    assert!(steady["iterations"].as_u64().unwrap() > 0 && steady["residual_pa"].is_number());
+}
+
+#[test]
+fn exit_codes() {
+    let dir = with_model(&MODEL.replace("length_m = 200", "lenght_m = 200"));
+    std::fs::write(dir.path().join("good.toml"), MODEL).unwrap();
+    let code = |arguments: &[&str]| anergy(arguments, dir.path()).status.code();
+    assert_eq!(code(&["check", "good.toml"]), Some(0));
+    assert_eq!(code(&["check", "model.toml"]), Some(1));
+    assert_eq!(code(&["run", "nothing.toml"]), Some(1));
+    assert_eq!(code(&["frobnicate"]), Some(2));
+    assert_eq!(code(&["run", "good.toml", "--until", "soon"]), Some(2));
+    let message = text(&anergy(&["check", "model.toml"], dir.path()).stderr);
+    assert!(
+        message.contains("model.toml:") && message.contains("did you mean `length_m`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn check_expands_explains_and_lists() {
+    let dir = with_model(MODEL);
+    let expanded = anergy(&["check", "model.toml", "--expand"], dir.path());
+    std::fs::write(dir.path().join("plain.toml"), &expanded.stdout).unwrap();
+    let of = |file: &str| text(&anergy(&["solve", file], dir.path()).stdout);
+    assert_eq!(of("plain.toml"), of("model.toml"));
+    let defaults = text(&anergy(&["check", "model.toml", "--explain-defaults"], dir.path()).stdout);
+    assert!(defaults.contains("sf1.feed_in_pump.rise_time_s"), "{defaults}");
+    let signals = text(&anergy(&["check", "model.toml", "--signals"], dir.path()).stdout);
+    assert!(signals.contains("sf2.feed_in_pump.speed"), "{signals}");
+}
+
+#[test]
+fn the_schema_is_json_and_knows_every_section() {
+    let output = anergy(&["schema"], Path::new("."));
+    let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for section in
+        ["run", "fluid", "site", "trench", "station", "edge", "unit", "schedule", "series"]
+    {
+        assert!(schema["properties"][section].is_object(), "{section}");
+    }
+}
+
+#[test]
+fn places_that_cannot_be_written_are_named() {
+    let dir = with_model(MODEL);
+    std::fs::write(dir.path().join("file"), "").unwrap();
+    let output = anergy(&["run", "model.toml", "--out", "file/below"], dir.path());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("file/below"), "{}", text(&output.stderr));
+    if Path::new("/dev/full").exists() {
+        std::fs::create_dir(dir.path().join("full")).unwrap();
+        std::os::unix::fs::symlink("/dev/full", dir.path().join("full/results.mcap")).unwrap();
+        let output = anergy(&["run", "model.toml", "--out", "full"], dir.path());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(message.contains("results.mcap") && !message.contains("panicked"), "{message}");
+    }
+}
+
+/// Starts a run of a simulated year and waits until it has written something.
+fn long_run(dir: &Path) -> std::process::Child {
+    let child = Command::new(env!("CARGO_BIN_EXE_anergy"))
+        .args(["run", "model.toml", "--until", "1a", "--record", "1s", "--out", "long"])
+        .current_dir(dir)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let results = dir.join("long/results.mcap");
+    let started = Instant::now();
+    while std::fs::metadata(&results).map_or(0, |file| file.len()) < 600_000 {
+        assert!(started.elapsed() < Duration::from_secs(60), "the run writes nothing");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    child
+}
+
+#[test]
+fn a_killed_run_can_still_be_reported() {
+    let dir = with_model(MODEL);
+    let mut child = long_run(dir.path());
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let output = anergy(&["report", "long/results.mcap", "--out", "killed.html"], dir.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("warning"), "the user is told that the file is cut");
+    assert!(!text(&output.stdout).starts_with("0 rows"), "{}", text(&output.stdout));
+}
+
+#[test]
+fn ctrl_c_leaves_a_complete_file() {
+    let dir = with_model(MODEL);
+    let mut child = long_run(dir.path());
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let summary = std::fs::read(dir.path().join("long/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
+    assert_eq!(summary["interrupted"], true);
+    let output = anergy(&["report", "long/results.mcap", "--out", "interrupted.html"], dir.path());
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+}
