@@ -40,11 +40,7 @@ fn flows(model: &Model) -> (f64, f64, f64) {
     let steady = steady::solve(model).unwrap();
     let flow = |edge: &str| steady.edge(edge).unwrap().m_flow_kg_s * 60.0;
     let p = |node: &str| steady.node(node).unwrap().p_pa;
-    (
-        flow("sf1.feed_in_pump"),
-        flow("sf2.feed_in_pump"),
-        (p("sf2.hot") - p("sf2.cold")) / 100.0,
-    )
+    (flow("sf1.feed_in_pump"), flow("sf2.feed_in_pump"), (p("sf2.hot") - p("sf2.cold")) / 100.0)
 }
 
 /// 1 % or 0.01 l/min.
@@ -68,8 +64,7 @@ fn all_six_rows_with_ideal_and_with_real_check_valves() {
     let model = model();
     let ideal_model = ideal_check_valves(&model);
     for (u1, u2, ideal, real) in rows {
-        for (what, model, (v1, v2, dp)) in
-            [("ideal", &ideal_model, ideal), ("real", &model, real)]
+        for (what, model, (v1, v2, dp)) in [("ideal", &ideal_model, ideal), ("real", &model, real)]
         {
             let found = flows(&at_speeds(model, u1, u2));
             close(&format!("{what} {u1} {u2} V1"), found.0, v1);
@@ -161,8 +156,16 @@ fn variant_b_no_blocking_when_sf1_is_the_near_feeder() {
     // 50 m from SF1 to SF2 and SF4 at SF1: SF1 is nearer to the consumer than SF2.
     let text = model().text;
     let nearer = text
-        .replacen("from = \"sf1\"\nto = \"sf2\"\nlength_m = 200", "from = \"sf2\"\nto = \"sf1\"\nlength_m = 200", 1)
-        .replacen("from = \"sf2\"\nto = \"sf4\"\nlength_m = 50", "from = \"sf1\"\nto = \"sf4\"\nlength_m = 50", 1);
+        .replacen(
+            "from = \"sf1\"\nto = \"sf2\"\nlength_m = 200",
+            "from = \"sf2\"\nto = \"sf1\"\nlength_m = 200",
+            1,
+        )
+        .replacen(
+            "from = \"sf2\"\nto = \"sf4\"\nlength_m = 50",
+            "from = \"sf1\"\nto = \"sf4\"\nlength_m = 50",
+            1,
+        );
     assert_ne!(text, nearer);
     let model = Model::from_toml(&nearer, &workspace()).unwrap();
     let (v1, v2, _) = flows(&at_speeds(&model, 0.95, 1.0));
@@ -200,4 +203,34 @@ fn editing_the_file_changes_the_result_as_physics_says() {
     assert!(far.0 < base.0, "a longer pipe lowers the flow of SF1: {far:?} {base:?}");
     let faster = flows(&at_speeds(&model(), 1.0, 1.0));
     assert!(faster.0 > base.0 && faster.1 < base.1, "{faster:?} {base:?}");
+}
+
+#[test]
+fn a_bidirectional_station_changes_from_feed_in_to_extraction_behind_its_interlock() {
+    // SF1 feeds in until 300 s, then takes heat from what SF2 delivers.
+    let text = model().text.replacen("kind = \"producer\"", "kind = \"bidirectional\"", 1)
+        + "[[schedule]]\nsignal = \"sf1.feed_in_pump.speed\"\npoints = [[0, 1.0], [300, 0.0]]\n\
+           [[schedule]]\nsignal = \"sf1.extraction_valve.opening\"\npoints = [[0, 0.0], [300, 1.0]]\n";
+    let model = Model::from_toml(&text, &workspace()).unwrap();
+    let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+    let get =
+        |simulation: &Simulation, name: &str| simulation.get(simulation.channel(name).unwrap());
+    let mut opened_at = None;
+    for second in 1..=900_i32 {
+        let time = Time::from_s(f64::from(second)).unwrap();
+        simulation.advance_to(time, Time::from_s(1.0).unwrap()).unwrap();
+        let speed = get(&simulation, "sf1.feed_in_pump.speed");
+        let opening = get(&simulation, "sf1.extraction_valve.opening");
+        if opening > 0.0 && opened_at.is_none() {
+            opened_at = Some(second);
+            assert!(speed < 0.02, "the valve opens while the pump runs at {speed}");
+        }
+        if second == 300 {
+            assert!(get(&simulation, "sf1.station.m_flow_kg_s") > 0.0);
+        }
+    }
+    // 0.02 = (1 + x) e^-x at x = 5.83: the pump runs down in 5.83 * 1.03 s = 6 s.
+    assert!((305..=308).contains(&opened_at.unwrap()), "{opened_at:?}");
+    assert!(get(&simulation, "sf1.station.m_flow_kg_s") < -0.01);
+    assert!(get(&simulation, "sf1.feed_in_check_valve.m_flow_kg_s") > -2e-3, "only its leak");
 }

@@ -5,7 +5,7 @@
 //!
 //! **Equation** the flag is set when the pump has been on, at its upper limit or at its commanded fixed
 //! speed, for more than 60 s with `V_act < 0.5 V_set`; cleared when `V_act > 0.6 V_set` or the pump is
-//! off. **Sources** specification 11 (`angelidis2023`).
+//! off. Interlock: the extraction valve opens only when the feed-in pump has run down below 2 % speed. **Sources** specification 11 (`angelidis2023`).
 
 use crate::graph::Network;
 use crate::state::NetworkState;
@@ -18,6 +18,8 @@ pub const BLOCKED_BELOW: f64 = 0.5;
 pub const CLEARED_ABOVE: f64 = 0.6;
 /// A pump must have been held back this long, s.
 pub const BLOCKED_AFTER_S: f64 = 60.0;
+/// Below this speed a pump has run down (interlock of a bidirectional station).
+const RUN_DOWN: f64 = 0.02;
 /// A speed this close to its limit or command has arrived there.
 const ARRIVED: f64 = 1e-3;
 
@@ -28,6 +30,8 @@ pub struct Station {
     pub edge: EdgeId,
     /// The pump that feeds in.
     pub pump: Option<EdgeId>,
+    /// The valve that extracts; it stays closed until the pump has run down.
+    pub valve: Option<EdgeId>,
     /// Flow the pump means to deliver, kg/s; decides the flag.
     pub requested_m_flow_kg_s: Option<f64>,
 }
@@ -48,6 +52,12 @@ impl Station {
     #[inline]
     pub fn m_flow_kg_s(&self, state: &NetworkState) -> f64 {
         state.m_flow_kg_s[self.edge.index()]
+    }
+
+    /// Whether the extraction valve may open: a running feed-in pump beside it would only pump in a
+    /// circle.
+    pub fn valve_may_open(&self, state: &NetworkState) -> bool {
+        self.pump.is_none_or(|pump| state.position[pump.index()] < RUN_DOWN)
     }
 
     /// Updates the flag after a step; `command` is the command of the pump. Returns the new flag

@@ -133,6 +133,7 @@ impl Builder<'_> {
             node_names: model.nodes.iter().map(|node| node.entry.id.clone()).collect(),
             edge_names: model.edges.iter().map(|edge| edge.id.clone()).collect(),
             station_names: model.interfaces.iter().map(|spec| spec.id.clone()).collect(),
+            station_of_valve: interlocks(model.edges.len(), &stations),
             stations,
             units,
             controllers: Vec::new(),
@@ -172,7 +173,8 @@ impl Builder<'_> {
                 found
             };
             let edge = find(&spec.edge);
-            let pump = spec.pump.as_deref().and_then(find);
+            let pump = spec.pump.as_deref().and_then(&mut find);
+            let valve = spec.valve.as_deref().and_then(find);
             if let Some(flow) = spec.requested_flow_m3_s.filter(|flow| *flow <= 0.0) {
                 let message = format!(
                     "interface \"{}\": requested_flow_m3_s = {flow} must be positive",
@@ -184,6 +186,7 @@ impl Builder<'_> {
                 stations.push(Station {
                     edge: EdgeId::from_index(edge),
                     pump: pump.map(EdgeId::from_index),
+                    valve: valve.map(EdgeId::from_index),
                     requested_m_flow_kg_s: spec
                         .requested_flow_m3_s
                         .map(|flow| flow * self.model.medium.density_kg_m3),
@@ -243,6 +246,17 @@ impl Builder<'_> {
             iterations: 0,
         }
     }
+}
+
+/// Which edges wait for the pump of which station.
+fn interlocks(edges: usize, stations: &[Station]) -> Vec<Option<usize>> {
+    let mut station_of_valve = vec![None; edges];
+    for (i, station) in stations.iter().enumerate() {
+        if let (Some(_), Some(valve)) = (station.pump, station.valve) {
+            station_of_valve[valve.index()] = Some(i);
+        }
+    }
+    station_of_valve
 }
 
 fn start_unix_ns(model: &Model) -> i64 {

@@ -99,7 +99,9 @@ impl Model {
         let kept_edge = |id: &str| wanted.contains(id);
         model.units.retain(|unit| kept_edge(&unit.port));
         model.interfaces.retain(|interface| {
-            kept_edge(&interface.edge) && interface.pump.as_deref().is_none_or(kept_edge)
+            kept_edge(&interface.edge)
+                && interface.pump.as_deref().is_none_or(kept_edge)
+                && interface.valve.as_deref().is_none_or(kept_edge)
         });
         let kept: HashSet<String> = model
             .edges

@@ -96,6 +96,8 @@ pub struct InterfaceSpec {
     pub edge: String,
     /// Pump that feeds in.
     pub pump: Option<String>,
+    /// Valve that extracts.
+    pub valve: Option<String>,
     /// Flow that the pump means to deliver, m3/s.
     pub requested_flow_m3_s: Option<f64>,
     /// Where it stands.

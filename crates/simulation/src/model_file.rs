@@ -223,6 +223,9 @@ pub struct InterfaceEntry {
     /// Pump that feeds in.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pump: Option<String>,
+    /// Valve that extracts; stays closed until the pump has run down.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub valve: Option<String>,
     /// Flow that the pump means to deliver, m3/s; decides the `blocked` flag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub requested_flow_m3_s: Option<f64>,

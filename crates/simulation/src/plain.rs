@@ -58,6 +58,7 @@ impl Model {
                         "id": interface.id,
                         "edge": interface.edge,
                         "pump": interface.pump,
+                        "valve": interface.valve,
                         "requested_flow_m3_s": interface.requested_flow_m3_s,
                     })
                 })

@@ -57,6 +57,8 @@ pub struct Plan {
     pub(crate) edge_names: Vec<String>,
     pub(crate) station_names: Vec<String>,
     pub(crate) stations: Vec<Station>,
+    /// Station of each edge that is an extraction valve beside a feed-in pump.
+    pub(crate) station_of_valve: Vec<Option<usize>>,
     pub(crate) units: Vec<PlannedUnit>,
     pub(crate) controllers: Vec<PlannedController>,
     pub(crate) drivers: Vec<Driver>,

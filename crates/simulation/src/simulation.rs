@@ -190,12 +190,21 @@ impl Simulation {
         }
     }
 
-    /// Actuators follow their commands; an infinite `dt_s` settles them.
-    pub(crate) fn move_actuators(&mut self, dt_s: f64) {
-        for (edge, command) in self.plan.commands.iter().enumerate() {
-            if let Some(command) = command {
+    /// Actuators follow their commands; an infinite `dt_s` settles them. The extraction valve of a
+    /// station waits for its pump.
+    fn move_actuators(&mut self, dt_s: f64) {
+        let (plan, network) = (&self.plan, &mut self.state.network);
+        for (edge, command) in plan.commands.iter().enumerate() {
+            if let (Some(command), None) = (command, plan.station_of_valve[edge]) {
                 let command = self.state.signals[command.index()];
-                self.state.network.advance_actuator(&self.plan.network, edge, command, dt_s);
+                network.advance_actuator(&plan.network, edge, command, dt_s);
+            }
+        }
+        for (edge, command) in plan.commands.iter().enumerate() {
+            if let (Some(command), Some(station)) = (command, plan.station_of_valve[edge]) {
+                let open = plan.stations[station].valve_may_open(network);
+                let command = if open { self.state.signals[command.index()] } else { 0.0 };
+                network.advance_actuator(&plan.network, edge, command, dt_s);
             }
         }
     }

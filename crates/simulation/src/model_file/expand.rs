@@ -191,6 +191,7 @@ pub(super) fn station(
         id,
         edge: inner(if parts.len() == 1 { "flow_source" } else { "heat_exchanger" }),
         pump: feeds_in.then(|| inner("feed_in_pump")),
+        valve: extracts.then(|| inner("extraction_valve")),
         requested_flow_m3_s: station.requested_flow_m3_s,
     };
     (nodes, edges, interface)

@@ -99,6 +99,7 @@ impl ModelReader<'_> {
                     id: entry.id,
                     edge: entry.edge,
                     pump: entry.pump,
+                    valve: entry.valve,
                     requested_flow_m3_s: entry.requested_flow_m3_s,
                     place: Place { span: tree.span, fields: Vec::new() },
                 })
