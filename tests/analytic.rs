@@ -9,7 +9,8 @@ use anergy_simulation::steady::{self, Steady};
 use std::path::Path;
 
 fn model(text: &str) -> Model {
-    Model::from_toml(text, Path::new(".")).unwrap_or_else(|problems| panic!("{}", problems.render(text)))
+    Model::from_toml(text, Path::new("."))
+        .unwrap_or_else(|problems| panic!("{}", problems.render(text)))
 }
 
 fn solve(text: &str) -> Steady {
@@ -23,12 +24,15 @@ fn l_min(steady: &Steady, edge: &str) -> f64 {
 const PUMP: &str = "head_max_hpa = 402.21\nfree_flow_l_min = 55.33\nspeed = 1.0\ndelta_m = 1e-4\n";
 
 fn edge(id: &str, kind: &str, from: &str, to: &str, fields: &str) -> String {
-    format!("[[edge]]\nid = \"{id}\"\nkind = \"{kind}\"\nfrom = \"{from}\"\nto = \"{to}\"\n{fields}\n")
+    format!(
+        "[[edge]]\nid = \"{id}\"\nkind = \"{kind}\"\nfrom = \"{from}\"\nto = \"{to}\"\n{fields}\n"
+    )
 }
 
 /// A resistance of k hPa/(l/min)^2.
 fn quadratic(id: &str, from: &str, to: &str, k: f64) -> String {
-    let fields = format!("dp_nominal_hpa = {}\nm_flow_nominal_kg_min = 10.0\ndelta_m = 1e-4", k * 100.0);
+    let fields =
+        format!("dp_nominal_hpa = {}\nm_flow_nominal_kg_min = 10.0\ndelta_m = 1e-4", k * 100.0);
     edge(id, "resistance", from, to, &fields)
 }
 
@@ -40,7 +44,8 @@ fn file(nodes: &[&str], rest: &str) -> String {
 #[test]
 fn single_loop() {
     // 14.2: V = sqrt(H0/(a + K)) = sqrt(402.21/1.131381) = 18.8548 l/min
-    let text = file(&["a", "b"], &(edge("pump", "pump", "a", "b", PUMP) + &quadratic("r", "b", "a", 1.0)));
+    let text =
+        file(&["a", "b"], &(edge("pump", "pump", "a", "b", PUMP) + &quadratic("r", "b", "a", 1.0)));
     let steady = solve(&text);
     assert!((l_min(&steady, "pump") - 18.8548).abs() < 1e-4);
     assert!((l_min(&steady, "r") - 18.8548).abs() < 1e-4);
@@ -71,7 +76,10 @@ fn parallel_pumps_share_and_a_ring_splits_evenly() {
     let total = l_min(&steady, "pump");
     assert!((l_min(&steady, "left_2") - total / 2.0).abs() < 1e-9 * total);
     assert!((l_min(&steady, "right_1") - total / 2.0).abs() < 1e-9 * total);
-    assert!((l_min(&steady, "right_2") + total / 2.0).abs() < 1e-9 * total, "connected against the flow");
+    assert!(
+        (l_min(&steady, "right_2") + total / 2.0).abs() < 1e-9 * total,
+        "connected against the flow"
+    );
     // Two symmetric meshes: no flow in the bridge.
     let bridge = ring + &pipe("bridge", "l", "r");
     let steady = solve(&file(&["a", "s", "l", "r", "e"], &bridge));
@@ -143,8 +151,10 @@ fn open_pipe(fields: &str, l_min: f64, t_in: f64, initial: f64, ground: f64, ste
     )
 }
 
-const LONG: &str = "length_m = 100.0\ninner_diameter_mm = 100.0\ninsulation_resistance_k_m_w = 5.2631578947368425";
-const THIN: &str = "length_m = 50.0\ninner_diameter_mm = 22.0\ninsulation_resistance_k_m_w = 3.7804";
+const LONG: &str =
+    "length_m = 100.0\ninner_diameter_mm = 100.0\ninsulation_resistance_k_m_w = 5.2631578947368425";
+const THIN: &str =
+    "length_m = 50.0\ninner_diameter_mm = 22.0\ninsulation_resistance_k_m_w = 3.7804";
 
 fn simulation(text: &str) -> Simulation {
     Simulation::new(build(&model(text)).unwrap()).unwrap()
@@ -207,7 +217,9 @@ fn standing_water_cools_as_published() {
 fn mixing_and_reversal() {
     // 10: 4 l/min of 15 and 4 l/min of 60 degC mix to 37.5 degC.
     let source = |id: &str, t: f64| {
-        format!("[[node]]\nid = \"{id}\"\nkind = \"source\"\nm_flow_kg_min = 4.0\ntemperature_degc = {t}\n")
+        format!(
+            "[[node]]\nid = \"{id}\"\nkind = \"source\"\nm_flow_kg_min = 4.0\ntemperature_degc = {t}\n"
+        )
     };
     let text = format!(
         "format = 1\n{}{}[[node]]\nid = \"mix\"\n[[node]]\nid = \"end\"\nkind = \"pressure_boundary\"\n\
@@ -237,7 +249,9 @@ fn the_energy_of_a_pipe_closes_over_reversals_standstill_and_long_steps() {
     let points = "[[0, -5], [60, 12], [200, 0], [400, -0.01], [500, -60], [700, 3], [900, -7]]";
     for step in [0.5, 1.0, 30.0, 200.0] {
         let text = open_pipe(THIN, 5.0, 65.0, 30.0, 10.0, "1s")
-            + &format!("[[schedule]]\nsignal = \"out.m_flow_kg_s\"\nunit = \"kg/min\"\npoints = {points}\n")
+            + &format!(
+                "[[schedule]]\nsignal = \"out.m_flow_kg_s\"\nunit = \"kg/min\"\npoints = {points}\n"
+            )
             + "[[schedule]]\nsignal = \"in.temperature_k\"\nunit = \"degC\"\ninterpolation = \"linear\"\n\
                points = [[0, 65], [300, 40], [800, 70]]\n";
         let mut simulation = simulation(&text);
@@ -260,7 +274,13 @@ fn two_circuits_meet_in_a_heat_exchanger() {
         )
     };
     let exchanger = |name: &str, extra: &str| {
-        edge(&format!("{name}_side"), "heat_exchanger", &format!("{name}_in"), &format!("{name}_out"), extra)
+        edge(
+            &format!("{name}_side"),
+            "heat_exchanger",
+            &format!("{name}_in"),
+            &format!("{name}_out"),
+            extra,
+        )
     };
     let text = format!(
         "format = 1\n{}{}{}{}",

@@ -159,10 +159,8 @@ fn changes_act_as_physics_says() {
     let base = flow(&model);
     // Twice the loss is, in a quadratic pipe, twice the length and twice the fittings.
     let wrapped = Change::WrapLaw { edge: "sf2-sf4.hot".into(), loss_factor: 2.0 };
-    let doubled = ["length_m", "zeta"].map(|field| Change::Scale {
-        parameter: format!("sf2-sf4.hot.{field}"),
-        factor: 2.0,
-    });
+    let doubled = ["length_m", "zeta"]
+        .map(|field| Change::Scale { parameter: format!("sf2-sf4.hot.{field}"), factor: 2.0 });
     let (by_law, by_size) =
         (flow(&model.with(&[wrapped]).unwrap()), flow(&model.with(&doubled).unwrap()));
     assert!((by_law / by_size - 1.0).abs() < 1e-9 && by_law < base, "{by_law} {by_size} {base}");
@@ -195,7 +193,10 @@ fn impossible_changes_name_their_target() {
     // A value that the component refuses is found by the build, with the component's name.
     let negative = model.with(&[set("sf1-sf2.hot.length_m", json!(-1.0))]).unwrap();
     let problems = build(&negative).unwrap_err().to_string();
-    assert!(problems.contains("sf1-sf2.hot") && problems.contains("must be positive"), "{problems}");
+    assert!(
+        problems.contains("sf1-sf2.hot") && problems.contains("must be positive"),
+        "{problems}"
+    );
 }
 
 #[test]
@@ -264,9 +265,8 @@ fn stopped_pumps_stop_the_water() {
 
 #[test]
 fn a_controller_is_settled_in_the_steady_solve() {
-    let flow = |model: &Model| {
-        steady::solve(model).unwrap().edge("sf1.feed_in_pump").unwrap().m_flow_kg_s
-    };
+    let flow =
+        |model: &Model| steady::solve(model).unwrap().edge("sf1.feed_in_pump").unwrap().m_flow_kg_s;
     assert!((flow(&controlled()) - 0.03).abs() < 1e-8);
     // A set point beyond the pump leaves it at full speed: 2.050 l/min (SC-01).
     let mut impossible = controlled();

@@ -3,6 +3,8 @@
 //!
 //! `FUZZ_VARIANTS=100000 cargo test -p anergy-tests --test fuzz` looks further.
 
+#![allow(clippy::unwrap_used)]
+
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_simulation::build::build;
 use anergy_simulation::error::RunError;
@@ -24,14 +26,35 @@ const SEED: u64 = 2024;
 
 /// Numbers that break things, as they are written in TOML.
 const EXTREMES: &[&str] = &[
-    "1e308", "-1e308", "1e-308", "1e30", "1e-30", "-1", "0", "-0.0", "1", "0.5", "2", "1e6", "1e-9",
-    "9223372036854775807", "nan", "inf", "-inf", "0x10", "\"0\"", "[1]", "true", "{}", "1979-05-27",
+    "1e308",
+    "-1e308",
+    "1e-308",
+    "1e30",
+    "1e-30",
+    "-1",
+    "0",
+    "-0.0",
+    "1",
+    "0.5",
+    "2",
+    "1e6",
+    "1e-9",
+    "9223372036854775807",
+    "nan",
+    "inf",
+    "-inf",
+    "0x10",
+    "\"0\"",
+    "[1]",
+    "true",
+    "{}",
+    "1979-05-27",
 ];
 
 /// Characters that mean something in TOML, and some that do not.
 const CHARACTERS: &[char] = &[
-    '"', '\'', '[', ']', '{', '}', '=', '.', ',', '#', '\n', '\\', '-', '_', '0', '9', 'e', 'x', ' ',
-    '\t', '\r', '\0', 'ß', '€', '😀',
+    '"', '\'', '[', ']', '{', '}', '=', '.', ',', '#', '\n', '\\', '-', '_', '0', '9', 'e', 'x',
+    ' ', '\t', '\r', '\0', 'ß', '€', '😀',
 ];
 
 /// Sections to splice in, so that more of the program is reached than the example uses.
@@ -174,7 +197,10 @@ fn outcome(text: &str, dir: &Path) -> Result<Outcome, String> {
     };
     let failure = match steady::solve(&model) {
         Ok(steady) => {
-            let finite = steady.nodes.iter().all(|node| node.p_pa.is_finite() && node.t_k.is_finite())
+            let finite = steady
+                .nodes
+                .iter()
+                .all(|node| node.p_pa.is_finite() && node.t_k.is_finite())
                 && steady.edges.iter().all(|e| e.m_flow_kg_s.is_finite() && e.dp_pa.is_finite());
             if !finite {
                 return Err("solved with numbers that are not finite".into());
@@ -240,7 +266,8 @@ fn damaged_models_never_panic_or_hang() {
     worker.join().unwrap();
     println!("refused, not solved, solved: {counts:?}");
     if let Some((_, text)) = failures.first() {
-        let problems: BTreeSet<&str> = failures.iter().map(|(problem, _)| problem.as_str()).collect();
+        let problems: BTreeSet<&str> =
+            failures.iter().map(|(problem, _)| problem.as_str()).collect();
         panic!("{} of {variants} variants fail: {problems:#?}; the first:\n{text}", failures.len());
     }
     // The damage is neither too small nor too large to find anything.

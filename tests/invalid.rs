@@ -4,6 +4,8 @@
 //! read them as somebody who sees the program for the first time. A new case is a new file; its first
 //! line says what is wrong.
 
+#![allow(clippy::unwrap_used)]
+
 use anergy_simulation::build::build;
 use anergy_simulation::diagnostic::Diagnostics;
 use anergy_simulation::error::RunError;

@@ -16,11 +16,15 @@ pub fn workspace() -> PathBuf {
 ///
 /// # Panics
 /// When the reference data are there but the case is not.
+#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 pub fn reference_data(case: &str) -> Option<PathBuf> {
     let root = std::env::var_os("ANERGY_REFERENCE_DATA")
         .map_or_else(|| workspace().join("../shared/data"), PathBuf::from);
     if !root.is_dir() {
-        println!("SKIPPED {case}: no reference data at {}; set ANERGY_REFERENCE_DATA", root.display());
+        println!(
+            "SKIPPED {case}: no reference data at {}; set ANERGY_REFERENCE_DATA",
+            root.display()
+        );
         return None;
     }
     let folder = root.join(case);

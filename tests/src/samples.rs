@@ -46,9 +46,7 @@ pub fn nature(params: &ElementParams) -> Nature {
 pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
     match kind {
         "pipe" => pipe().prop_map(ElementParams::Pipe).boxed(),
-        "pump" => {
-            prop_oneof![quadratic_pump(), table_pump()].prop_map(ElementParams::Pump).boxed()
-        }
+        "pump" => prop_oneof![quadratic_pump(), table_pump()].prop_map(ElementParams::Pump).boxed(),
         "valve" => valve().prop_map(ElementParams::Valve).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
@@ -103,11 +101,20 @@ fn quadratic_pump() -> impl Strategy<Value = PumpParams> {
     })
 }
 
-/// A curve of a catalogue: flat at first, steeper with the flow, but with points read off by eye.
+/// A curve of a catalogue: steeper with the flow, but with points read off by eye.
 fn table_pump() -> impl Strategy<Value = PumpParams> {
-    let steps = prop::collection::vec((0.2..1.0, 0.02..1.0), 1..8);
+    // Widths, and how the curve steepens from one piece to the next.
+    let steps = prop::collection::vec((0.2..1.0, 0.8..3.0), 1..8);
     let curve = (logarithmic(1e3, 2e6), logarithmic(1e-5, 0.3), steps, 0.0..0.9);
-    (curve, drive()).prop_map(|((head_max, flow_max, steps, head_at_end), drive)| {
+    (curve, drive()).prop_map(|((head_max, flow_max, widths, head_at_end), drive)| {
+        let mut steepness = 1.0;
+        let steps: Vec<(f64, f64)> = widths
+            .into_iter()
+            .map(|(width, steepening): (f64, f64)| {
+                steepness *= steepening;
+                (width, width * steepness)
+            })
+            .collect();
         let whole = steps.iter().fold((0.0, 0.0), |sum, step| (sum.0 + step.0, sum.1 + step.1));
         let (mut v_flow, mut head) = (vec![0.0], vec![head_max]);
         let (mut v_sum, mut head_sum) = (0.0, 0.0);
@@ -152,10 +159,10 @@ fn valve() -> impl Strategy<Value = ValveParams> {
         (0.0..0.5).prop_map(|leakage| (ValveCharacteristic::Linear, 50.0, leakage)),
     ];
     let tight = prop::bool::weighted(0.2);
-    let nominal = option::of(logarithmic(1e-3, 100.0));
+    let nominal = option::of(logarithmic(0.1, 5.0));
     let numbers = (0.0..1.0, any::<bool>(), 0.0..120.0, nominal, 0.005..0.3);
     (logarithmic(0.1, 1000.0), curve, tight, numbers).prop_map(|(kvs_m3_h, curve, tight, n)| {
-        let (command, by_kappa, stroke_time_s, m_flow_nominal_kg_s, delta_m) = n;
+        let (command, by_kappa, stroke_time_s, nominal, delta_m) = n;
         ValveParams {
             kvs_m3_h,
             characteristic: curve.0,
@@ -166,20 +173,26 @@ fn valve() -> impl Strategy<Value = ValveParams> {
             kappa: by_kappa.then_some(command),
             initial_opening: None,
             stroke_time_s,
-            m_flow_nominal_kg_s,
+            m_flow_nominal_kg_s: nominal.map(|share| share * at_a_tenth_of_a_bar_kg_s(kvs_m3_h)),
             delta_m,
         }
     })
 }
 
+/// Flow at 0.1 bar of a valve of a Kv value, kg/s.
+fn at_a_tenth_of_a_bar_kg_s(kv_m3_h: f64) -> f64 {
+    kv_m3_h / 3.6 * 0.1_f64.sqrt()
+}
+
 fn check_valve() -> impl Strategy<Value = CheckValveParams> {
-    (logarithmic(0.1, 1000.0), logarithmic(1e-5, 0.5), logarithmic(0.01, 100.0), 0.005..0.3)
-        .prop_map(|(kvs_m3_h, leakage, m_flow_nominal_kg_s, delta_m)| CheckValveParams {
+    (logarithmic(0.1, 1000.0), logarithmic(1e-4, 0.5), logarithmic(0.1, 5.0), 0.005..0.3).prop_map(
+        |(kvs_m3_h, leakage, nominal, delta_m)| CheckValveParams {
             kvs_m3_h,
             leakage,
-            m_flow_nominal_kg_s,
+            m_flow_nominal_kg_s: nominal * at_a_tenth_of_a_bar_kg_s(kvs_m3_h),
             delta_m,
-        })
+        },
+    )
 }
 
 fn resistance() -> impl Strategy<Value = ResistanceParams> {
@@ -191,10 +204,10 @@ fn resistance() -> impl Strategy<Value = ResistanceParams> {
             delta_m,
         },
     );
-    let kv = (logarithmic(0.1, 1000.0), option::of(logarithmic(1e-3, 1e3)), 0.005..0.5).prop_map(
-        |(kv_m3_h, m_flow_nominal_kg_s, delta_m)| ResistanceParams {
+    let kv = (logarithmic(0.1, 1000.0), option::of(logarithmic(0.1, 5.0)), 0.005..0.5).prop_map(
+        |(kv_m3_h, nominal, delta_m)| ResistanceParams {
             dp_nominal_pa: None,
-            m_flow_nominal_kg_s,
+            m_flow_nominal_kg_s: nominal.map(|share| share * at_a_tenth_of_a_bar_kg_s(kv_m3_h)),
             kv_m3_h: Some(kv_m3_h),
             delta_m,
         },

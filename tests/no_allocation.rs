@@ -1,0 +1,114 @@
+//! A step allocates nothing: neither when flows change, nor when they are kept, nor when the
+//! temperatures of closed loops are solved together. (The message of an event is a text and does; the
+//! windows measured here have no events, which is checked.)
+
+use allocation_counter::measure;
+use anergy_benches::two_pipe_network;
+use anergy_core::clock::{NS_PER_S, Time};
+use anergy_core::ids::SignalId;
+use anergy_network::elements::ElementParams;
+use anergy_simulation::build::build;
+use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
+use anergy_tests::workspace;
+
+const SPEEDS: [f64; 7] = [1.0, 0.997, 1.002, 0.995, 0.999, 0.993, 0.998];
+
+fn model(text: &str) -> Model {
+    Model::from_toml(text, &workspace())
+        .unwrap_or_else(|problems| panic!("{}", problems.render(text)))
+}
+
+fn demo() -> Model {
+    model(&std::fs::read_to_string(workspace().join("examples/three-houses/model.toml")).unwrap())
+}
+
+fn simulation(model: &Model) -> Simulation {
+    Simulation::new(build(model).unwrap()).unwrap()
+}
+
+/// Steps with another command for each pump before each of them.
+fn steps(simulation: &mut Simulation, pumps: &[(SignalId, f64)], count: usize, step_s: i64) {
+    let step = Time(step_s * NS_PER_S);
+    for k in 0..count {
+        for (i, &(pump, speed)) in pumps.iter().enumerate() {
+            simulation.set(pump, speed * SPEEDS[(k + i) % SPEEDS.len()]).unwrap();
+        }
+        let end = simulation.time() + step;
+        simulation.advance_to(end, step).unwrap();
+    }
+}
+
+/// Nothing is allocated in `count` steps after `warm_up` steps.
+#[track_caller]
+fn assert_no_allocation(
+    simulation: &mut Simulation,
+    pumps: &[(&str, f64)],
+    (warm_up, count): (usize, usize),
+    step_s: i64,
+) {
+    let pumps: Vec<(SignalId, f64)> = pumps
+        .iter()
+        .map(|(pump, speed)| (simulation.signal(&format!("{pump}.speed")).unwrap(), *speed))
+        .collect();
+    steps(simulation, &pumps, warm_up, step_s);
+    simulation.take_events();
+    let found = measure(|| steps(simulation, &pumps, count, step_s));
+    let events: Vec<String> = simulation.take_events().map(|event| event.message).collect();
+    assert!(events.is_empty(), "the window has events: {events:?}");
+    assert_eq!((found.count_total, found.bytes_total), (0, 0), "in {count} steps of {step_s} s");
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(measure(|| drop(std::hint::black_box(vec![1_u8; 100]))).count_total, 1);
+}
+
+#[test]
+fn demo_with_changing_pumps() {
+    // SF2 at 85 %, as after its schedule, so that SF1 is not blocked.
+    let pumps = [("sf1.feed_in_pump", 0.95), ("sf2.feed_in_pump", 0.85)];
+    assert_no_allocation(&mut simulation(&demo()), &pumps, (100, 900), 1);
+}
+
+#[test]
+fn demo_at_rest_with_its_schedule() {
+    // From 1000 s, when SF1 has long been blocked, into the ramp of SF2 that begins at 2230 s; SF1 is
+    // free again after it.
+    assert_no_allocation(&mut simulation(&demo()), &[], (1000, 1232), 1);
+}
+
+#[test]
+fn generated_network_with_changing_pump() {
+    let mut simulation = simulation(&model(&two_pipe_network(100, 1)));
+    assert_no_allocation(&mut simulation, &[("plant.feed_in_pump", 0.99)], (100, 500), 1);
+}
+
+#[test]
+fn closed_loops_in_long_steps() {
+    let model = model(&two_pipe_network(100, 1));
+    let mut simulation = simulation(&model);
+    let step_s = 600;
+    assert_no_allocation(&mut simulation, &[("plant.feed_in_pump", 0.99)], (20, 300), step_s);
+    // The water passes the plant, the consumer nearest to it and all pipes between within a step: their
+    // temperatures depend on each other, so that they were solved as one linear system.
+    let overrun = |id: &str| {
+        let ElementParams::Pipe(pipe) = &model.edge(id).unwrap().params else { return true };
+        let m = simulation.get(simulation.channel(&format!("{id}.m_flow_kg_s")).unwrap());
+        let area_m2 = std::f64::consts::PI / 4.0 * pipe.inner_diameter_m * pipe.inner_diameter_m;
+        m.abs() * step_s as f64 > area_m2 * pipe.length_m * model.medium.density_kg_m3
+    };
+    let site =
+        model.edges.iter().find_map(|edge| edge.id.strip_prefix("plant-")?.strip_suffix(".hot"));
+    let site = site.unwrap();
+    for id in [
+        "plant.stub_hot".to_owned(),
+        "plant.stub_cold".to_owned(),
+        format!("plant-{site}.hot"),
+        format!("plant-{site}.cold"),
+        format!("{site}.stub_hot"),
+        format!("{site}.stub_cold"),
+    ] {
+        assert!(overrun(&id), "{id} holds more than passes in a step");
+    }
+}
