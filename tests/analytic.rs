@@ -1,4 +1,5 @@
 //! Cases with a solution on paper: single loop, symmetric networks, elevation, plug flow, standstill.
+#![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;

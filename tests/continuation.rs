@@ -1,4 +1,5 @@
 //! State is data: snapshots, overlays and cut-out parts behave as the whole.
+#![allow(clippy::unwrap_used)]
 
 use anergy_control::controllers::ControllerParams;
 use anergy_core::clock::Time;

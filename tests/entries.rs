@@ -1,4 +1,5 @@
 //! What a model file can say, used as its author means it.
+#![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;

@@ -1,6 +1,7 @@
 //! A step allocates nothing: neither when flows change, nor when they are kept, nor when the
 //! temperatures of closed loops are solved together. (The message of an event is a text and does; the
 //! windows measured here have no events, which is checked.)
+#![allow(clippy::unwrap_used)]
 
 use allocation_counter::measure;
 use anergy_benches::two_pipe_network;

@@ -1,4 +1,5 @@
 //! SC-01: pump blocking of three houses, its threshold, its relief and its variants.
+#![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
 use anergy_simulation::build::build;

@@ -1,4 +1,5 @@
 //! SC-00: the published three-prosumer network, steady and as the end of a run.
+#![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
 use anergy_simulation::build::build;

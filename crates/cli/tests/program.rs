@@ -1,4 +1,5 @@
 //! The program as a user meets it: files, exit codes, interruptions, full disks.
+#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

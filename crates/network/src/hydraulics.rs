@@ -35,9 +35,11 @@ const STEP_KG_S: f64 = 1e-8;
 const STEP_RELATIVE: f64 = 1e-7;
 /// Water that a pressure reference may exchange, kg/s; more is an unbalanced circuit.
 const REFERENCE_EXCHANGE_KG_S: f64 = 1e-6;
-/// Slopes outside these bounds (of the median, Pa s/kg) slow the step, not the result.
-const SLOPE_FLOOR_OF_MEDIAN: f64 = 1e-6;
-const SLOPE_CAP: f64 = 1e12;
+/// Bounds of the slopes that the matrix sees, Pa s/kg: beyond what any component has, so that they only
+/// keep the matrix finite. A tighter floor shrinks the step of wide pipes, a tighter cap enlarges that of
+/// closed valves.
+const SLOPE_FLOOR: f64 = 1e-9;
+const SLOPE_CAP: f64 = 1e16;
 /// A step is accepted when the slope of the content has fallen to this share.
 const CONTENT_SLOPE_SHARE: f64 = 0.5;
 const MAX_ITERATIONS: u32 = 100;
@@ -105,7 +107,6 @@ pub struct HydraulicSolver {
     trial: Vec<f64>,
     trial_loss: Vec<f64>,
     trial_slope: Vec<f64>,
-    median: Vec<f64>,
 }
 
 impl HydraulicSolver {
@@ -124,7 +125,6 @@ impl HydraulicSolver {
             trial: vec![0.0; edges],
             trial_loss: vec![0.0; edges],
             trial_slope: vec![1.0; edges],
-            median: Vec::with_capacity(edges),
         })
     }
 
@@ -145,7 +145,7 @@ impl HydraulicSolver {
         self.system.begin(network, state, &self.imposed)?;
         let mut mass_balanced = false;
         for iteration in 1..=MAX_ITERATIONS {
-            self.floor_slopes();
+            self.bound_slopes();
             self.system.newton_step(
                 network,
                 state,
@@ -213,17 +213,9 @@ impl HydraulicSolver {
     }
 
     /// Bounds the slopes that the matrix sees.
-    fn floor_slopes(&mut self) {
-        self.median.clear();
-        self.median.extend_from_slice(&self.slope);
-        if self.median.is_empty() {
-            return;
-        }
-        let middle = self.median.len() / 2;
-        let (_, median, _) = self.median.select_nth_unstable_by(middle, f64::total_cmp);
-        let floor = SLOPE_FLOOR_OF_MEDIAN * *median;
+    fn bound_slopes(&mut self) {
         for slope in &mut self.slope {
-            *slope = slope.clamp(floor, SLOPE_CAP);
+            *slope = slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
         }
     }
 

@@ -55,6 +55,11 @@ impl Builder<'_> {
         let model = self.model;
         let nodes = model.nodes.iter().map(|node| ("node", &node.entry.id, &node.place));
         self.check_doubled(nodes.collect());
+        if let Some(node) = model.nodes.iter().find(|node| node.entry.id == "ground") {
+            let hint = "`ground` is what surrounds the pipes; give the node another id".to_owned();
+            let span = node.place.span.clone();
+            self.report("a node cannot be called \"ground\"".into(), span, Some(hint));
+        }
         let others = model
             .edges
             .iter()
@@ -122,7 +127,8 @@ impl Builder<'_> {
                 signals.add(free_signal(&format!("{}.set_point", spec.id), "", set_point))
             })
             .collect();
-        let drivers = self.drivers(&signals, &mut writers);
+        // Without all edges there are not all signals: what is missing has been reported.
+        let drivers = if whole { self.drivers(&signals, &mut writers) } else { Vec::new() };
         let steps = self.run_times();
         if !self.problems.is_empty() || !whole {
             // Controllers measure channels, which need a sound plan.

@@ -17,7 +17,7 @@ use serde::Serialize;
 const SETTLED_K: f64 = 1e-9;
 /// Flows have settled when none changes by more, kg/s.
 const SETTLED_KG_S: f64 = 1e-11;
-const MAX_ROUNDS: u32 = 2000;
+const MAX_ROUNDS: u32 = 20_000;
 const MAX_CONTROL_ROUNDS: u32 = 60;
 /// Actuator change for the difference quotient.
 const DIFFERENCE: f64 = 1e-5;
@@ -106,7 +106,9 @@ pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> 
 fn settle_temperatures(simulation: &mut Simulation) -> Result<(), RunError> {
     let mut culprit = String::new();
     for _ in 0..MAX_ROUNDS {
-        let before = simulation.state().network.clone();
+        let network = &simulation.state().network;
+        let (flows, nodes, ports) =
+            (network.m_flow_kg_s.clone(), network.t_node_k.clone(), network.t_secondary_k.clone());
         simulation.settle_once()?;
         let after = &simulation.state().network;
         let largest = |old: &[f64], new: &[f64]| {
@@ -115,9 +117,9 @@ fn settle_temperatures(simulation: &mut Simulation) -> Result<(), RunError> {
                 |worst, (i, change)| if change > worst.1 { (i, change) } else { worst },
             )
         };
-        let (node, node_change) = largest(&before.t_node_k, &after.t_node_k);
-        let (port, port_change) = largest(&before.t_secondary_k, &after.t_secondary_k);
-        let (edge, flow_change) = largest(&before.m_flow_kg_s, &after.m_flow_kg_s);
+        let (node, node_change) = largest(&nodes, &after.t_node_k);
+        let (port, port_change) = largest(&ports, &after.t_secondary_k);
+        let (edge, flow_change) = largest(&flows, &after.m_flow_kg_s);
         let plan = simulation.plan();
         if flow_change > SETTLED_KG_S {
             culprit = format!(

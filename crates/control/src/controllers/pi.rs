@@ -75,7 +75,10 @@ impl Controller for Pi {
     }
 
     fn output_limits(&self, (min, max): (f64, f64)) -> (f64, f64) {
-        (self.params.output_min.unwrap_or(min), self.params.output_max.unwrap_or(max))
+        // Within what the actuator can do, also when the file asks for more.
+        let low = self.params.output_min.map_or(min, |low| low.clamp(min, max));
+        let high = self.params.output_max.map_or(max, |high| high.clamp(min, max));
+        (low, high.max(low))
     }
 
     fn direction(&self) -> f64 {

@@ -120,6 +120,24 @@ impl Pchip {
         self
     }
 
+    /// Gives both ends at least a share of the slope of their secants, so that strictly monotone data
+    /// give a strictly monotone curve, also beyond its ends.
+    pub fn with_end_slopes(mut self, share: f64) -> Self {
+        let last = self.x.len() - 1;
+        for (end, left) in [(0, 0), (last, last - 1)] {
+            let least = share * self.secant(left);
+            if self.slope[end].abs() < least.abs() {
+                self.slope[end] = least;
+            }
+        }
+        self
+    }
+
+    /// Slope of the straight line from point i to the next one.
+    pub fn secant(&self, i: usize) -> f64 {
+        (self.y[i + 1] - self.y[i]) / (self.x[i + 1] - self.x[i])
+    }
+
     /// First and last abscissa.
     pub fn range(&self) -> (f64, f64) {
         (self.x[0], self.x[self.x.len() - 1])

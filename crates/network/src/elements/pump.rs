@@ -26,6 +26,9 @@ use serde::{Deserialize, Serialize};
 /// Below this speed a table curve is blended into the impeller at rest.
 const BLEND_SPEED: f64 = 0.05;
 
+/// Slope of a table at its ends, at least, as a share of the first and last secant.
+const END_SLOPE_SHARE: f64 = 0.1;
+
 /// A pump as written in a model file: either `head_max_pa` and `free_flow_m3_s`, or the two columns
 /// `curve_v_flow_m3_s` and `curve_head_pa`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -182,9 +185,10 @@ impl PumpParams {
         let curvature = head_max_pa / (m_free * m_free);
         let m_turbulent_kg_s = positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s;
         let table = curve.map(|curve| {
-            // In terms of the mass flow; the slope at zero is never flatter than the regularised
-            // quadratic's, so that the law stays strictly monotone.
+            // The slope at zero is that of the regularised quadratic where the table is flatter, as
+            // far as the curve stays monotone (three times the first secant).
             let floor = quadratic_slope_at_zero(curvature, m_turbulent_kg_s) * rho;
+            let floor = floor.min(-2.0 * curve.secant(0));
             let slope_at_zero = curve.at(0.0).slope.min(-floor);
             TableCurve { points: curve.with_first_slope(slope_at_zero), slope_at_zero }
         });
@@ -213,10 +217,12 @@ impl PumpParams {
 
 /// The table as a curve that starts at zero flow and falls strictly.
 fn checked_curve(v_flow: &[f64], head: &[f64]) -> Result<Pchip, ElementError> {
-    let curve = Pchip::new(v_flow, head).map_err(|error| ElementError::Table {
-        field: "curve_v_flow_m3_s",
-        problem: error.to_string(),
-    })?;
+    let curve = Pchip::new(v_flow, head)
+        .map_err(|error| ElementError::Table {
+            field: "curve_v_flow_m3_s",
+            problem: error.to_string(),
+        })?
+        .with_end_slopes(END_SLOPE_SHARE);
     if v_flow[0] != 0.0 {
         return Err(ElementError::Table {
             field: "curve_v_flow_m3_s",
@@ -338,6 +344,24 @@ mod tests {
             // P = V dp/0.49
             assert!((power(0.3, 1.0) / (3e-4 * full / 0.49) - 1.0).abs() < 1e-12);
             assert_eq!(power(0.1, 0.0), 0.0);
+        }
+    }
+
+    #[test]
+    fn awkward_tables_stay_strictly_monotone() {
+        for heads in [[1000.0, 100.0, 90.0], [1000.0, 999.99, 500.0], [1000.0, 10.0, 9.999]] {
+            let pump = PumpParams {
+                head_max_pa: None,
+                free_flow_m3_s: None,
+                curve_v_flow_m3_s: vec![0.0, 1e-4, 2e-4],
+                curve_head_pa: heads.to_vec(),
+                ..PumpParams::default()
+            }
+            .build(&Medium::default())
+            .unwrap();
+            let flows: Vec<f64> = (-300..=500).map(|i| f64::from(i) * 1e-3).collect();
+            let law = |m| pump.head_loss(m, 1.0, 1000.0);
+            anergy_core::testing::check_monotone(law, &flows).unwrap();
         }
     }
 
