@@ -24,18 +24,18 @@ test-doc: ## Rust documentation builds without warnings, its examples run
 	cargo test --workspace --doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 
-$(VENV)/.installed: crates/py/pyproject.toml
+$(VENV)/.installed:
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet "maturin>=1.9,<2" numpy pytest mypy pandas xarray mcap
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check "maturin>=1.9.4,<2" numpy \
+		"pytest>=8" "mypy>=1.16" pandas pandas-stubs xarray matplotlib mcap
 	touch $@
 
 python: $(VENV)/.installed ## Build the Python package into a private environment
-	cd crates/py && VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --quiet
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --quiet -m crates/py/Cargo.toml
 
 test-python: python ## Python tests, stub check and examples
-	$(BIN)/python -m pytest -q crates/py/tests
-	$(BIN)/python -m mypy.stubtest anergy
+	$(BIN)/python -m pytest -q crates/py
+	$(BIN)/python -m mypy.stubtest anergy --mypy-config-file crates/py/pyproject.toml
 	$(BIN)/python examples/three-houses/run.py
 
 validate: ## Slow cases, peers, large random sets

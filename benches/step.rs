@@ -57,6 +57,7 @@ fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, Wal
     let mut group = criterion.benchmark_group(name);
     group
         .sample_size(20)
+        .nresamples(10_000)
         .sampling_mode(SamplingMode::Flat)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));

@@ -73,7 +73,7 @@ fn demo_with_changing_pumps() {
 }
 
 #[test]
-fn demo_at_rest_with_its_schedule() {
+fn demo_with_its_schedule() {
     // From 1000 s, when SF1 has long been blocked, into the ramp of SF2 that begins at 2230 s; SF1 is
     // free again after it.
     assert_no_allocation(&mut simulation(&demo()), &[], (1000, 1232), 1);
