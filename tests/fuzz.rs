@@ -270,6 +270,6 @@ fn damaged_models_never_panic_or_hang() {
             failures.iter().map(|(problem, _)| problem.as_str()).collect();
         panic!("{} of {variants} variants fail: {problems:#?}; the first:\n{text}", failures.len());
     }
-    // The damage is neither too small nor too large to find anything.
-    assert!(counts.iter().all(|&count| count > variants / 50), "{counts:?}");
+    // The damage is neither too small nor too large to find anything; few sound models have no solution.
+    assert!(counts[0] > variants / 50 && counts[2] > variants / 50 && counts[1] > 0, "{counts:?}");
 }
