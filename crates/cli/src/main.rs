@@ -41,7 +41,7 @@ enum Command {
         /// Time between recorded rows, for example 60s (overrides the model)
         #[arg(long, value_name = "DURATION")]
         record: Option<String>,
-        /// Folder for results.mcap, summary.json and report.html [default: results/<name of the model file>]
+        /// Folder for results.mcap, summary.json and report.html (default: results/ and the name of the model)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
