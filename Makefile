@@ -4,10 +4,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python validate bench demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python validate bench instructions demo clean
 
 help: ## Show the targets
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
 
 test: fmt-check lint test-rust test-doc test-python ## Run all checks: what CI runs
 
@@ -43,6 +43,12 @@ validate: ## Slow cases, peers, large random sets
 
 bench: ## Criterion benches
 	cargo bench -p anergy-benches
+
+instructions: ## Instructions of one warm solve with 1 000 edges (needs valgrind)
+	cargo build --release -p anergy-benches --bin warm_solve
+	@count() { valgrind --tool=callgrind --callgrind-out-file=/dev/null \
+		target/release/warm_solve 1000 $$1 2>&1 | sed -n 's/.*Collected : *//p'; }; \
+	echo "$$(( ($$(count 200) - $$(count 0)) / 200 )) instructions"
 
 demo: ## The main job on the embedded study
 	cargo run --release -- demo

@@ -100,8 +100,12 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "speed_max",
     "speed_min",
     "zeta",
-    // Exponents.
+    // Exponents and empirical coefficients.
+    "exponent",
     "flow_exponent",
+    "coefficient",
+    "hazen_williams_c",
+    "manning_n",
     // The unit is that of the signal, the channel, the position or the law they belong to.
     "columns",
     "gain",

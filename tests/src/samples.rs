@@ -67,30 +67,42 @@ pub fn logarithmic(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
 fn pipe() -> impl Strategy<Value = PipeParams> {
     let law = (
         prop_oneof![
-            Just(Correlation::Haaland),
-            Just(Correlation::Colebrook),
-            Just(Correlation::SwameeJain)
+            Just((Correlation::Haaland, Transition::Cubic)),
+            Just((Correlation::Haaland, Transition::Linear)),
+            Just((Correlation::Colebrook, Transition::Cubic)),
+            Just((Correlation::SwameeJain, Transition::Cubic)),
+            Just((Correlation::SwameeJain, Transition::Dunlop)),
+            Just((Correlation::HazenWilliams, Transition::Cubic)),
+            Just((Correlation::ChezyManning, Transition::Cubic)),
         ],
-        prop_oneof![Just(Transition::Cubic), Just(Transition::Linear)],
         option::of(0.05..3.0),
         0.005..0.5,
+        60.0..150.0,
+        0.008..0.03,
     );
     let heat = (option::of(0.5..10.0), option::of(263.0..303.0), option::of(275.0..370.0));
     let wall = prop_oneof![Just(0.0), logarithmic(1e-6, 0.05)];
     let zeta = prop_oneof![Just(0.0), 0.1..50.0];
     (logarithmic(0.1, 5000.0), logarithmic(0.005, 1.2), wall, zeta, law, heat).prop_map(
-        |(length_m, inner_diameter_m, wall, zeta, law, heat)| PipeParams {
-            length_m,
-            inner_diameter_m,
-            roughness_m: wall * inner_diameter_m,
-            zeta,
-            friction: law.0,
-            transition: law.1,
-            fixed_velocity_m_s: law.2,
-            delta_m: law.3,
-            insulation_resistance_k_m_w: heat.0,
-            surroundings_k: heat.1,
-            initial_k: heat.2,
+        |(length_m, inner_diameter_m, wall, zeta, law, heat)| {
+            let ((friction, transition), velocity, delta_m, c, n) = law;
+            let hazen_williams = friction == Correlation::HazenWilliams;
+            let chezy_manning = friction == Correlation::ChezyManning;
+            PipeParams {
+                length_m,
+                inner_diameter_m,
+                roughness_m: wall * inner_diameter_m,
+                zeta,
+                friction,
+                transition,
+                hazen_williams_c: hazen_williams.then_some(c),
+                manning_n: chezy_manning.then_some(n),
+                fixed_velocity_m_s: velocity.filter(|_| !hazen_williams && !chezy_manning),
+                delta_m,
+                insulation_resistance_k_m_w: heat.0,
+                surroundings_k: heat.1,
+                initial_k: heat.2,
+            }
         },
     )
 }

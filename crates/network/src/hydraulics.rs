@@ -18,9 +18,10 @@ mod ideal;
 
 use crate::graph::Network;
 use crate::state::NetworkState;
-use crate::two_port::Characteristic;
+use crate::two_port::{Characteristic, EdgeState};
 use anergy_core::error::FactorError;
 use anergy_core::ids::{EdgeId, NodeId};
+use anergy_core::linear::Linear;
 use assemble::NodalSystem;
 use thiserror::Error;
 
@@ -33,6 +34,9 @@ const MASS_RESIDUAL_KG_S: f64 = 1e-9;
 /// Largest accepted last step, kg/s and relative to the flow.
 const STEP_KG_S: f64 = 1e-8;
 const STEP_RELATIVE: f64 = 1e-7;
+/// Share of that which no edge may still need if its ends kept their pressures, when the last step was
+/// larger: the next one is not.
+const CORRECTION_SHARE: f64 = 1e-2;
 /// Water that a pressure reference may exchange, kg/s; more is an unbalanced circuit.
 const REFERENCE_EXCHANGE_KG_S: f64 = 1e-6;
 /// Bounds of the slopes that the matrix sees, Pa s/kg: beyond what any component has, so that they only
@@ -95,18 +99,46 @@ pub enum HydraulicError {
     Factor(#[from] FactorError),
 }
 
+/// How an edge enters the equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// With its law.
+    Law,
+    /// With a given flow.
+    Imposed,
+    /// As an ideal head source, which merges its nodes.
+    Ideal,
+}
+
+/// Laws of the edges at some flows: loss Pa (or the imposed flow, kg/s) and slope Pa s/kg.
+struct Laws {
+    loss: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+/// What a trial step found.
+struct Trial {
+    /// Slope of the content along the step.
+    content_slope: f64,
+    /// Largest pressure residual, Pa.
+    residual_pa: f64,
+    /// Largest flow that an edge would change by if its ends kept their pressures, over the tolerance.
+    correction: f64,
+}
+
 /// The solver with its factorisation and work space; holds no state of the network.
 pub struct HydraulicSolver {
     system: NodalSystem,
-    /// Law of each edge at the present flow: loss Pa and slope Pa s/kg.
-    loss: Vec<f64>,
-    slope: Vec<f64>,
-    imposed: Vec<bool>,
+    kind: Vec<Kind>,
+    laws: Laws,
+    /// What `laws` was evaluated at, where `known`.
+    known_state: Vec<EdgeState>,
+    known_m_kg_s: Vec<f64>,
+    known: bool,
     /// Newton step of each edge, kg/s.
     step: Vec<f64>,
-    trial: Vec<f64>,
-    trial_loss: Vec<f64>,
-    trial_slope: Vec<f64>,
+    trial_m_kg_s: Vec<f64>,
+    trial_laws: Laws,
 }
 
 impl HydraulicSolver {
@@ -116,15 +148,18 @@ impl HydraulicSolver {
     /// [`HydraulicError::Factor`] when the pattern cannot be analysed.
     pub fn new(network: &Network) -> Result<Self, HydraulicError> {
         let edges = network.edges.len();
+        let laws = || Laws { loss: vec![0.0; edges], slope: vec![1.0; edges] };
+        let nowhere = EdgeState { position: 0.0, density_kg_m3: 0.0, viscosity_pa_s: 0.0 };
         Ok(Self {
             system: NodalSystem::new(network)?,
-            loss: vec![0.0; edges],
-            slope: vec![1.0; edges],
-            imposed: vec![false; edges],
+            kind: vec![Kind::Law; edges],
+            laws: laws(),
+            known_state: vec![nowhere; edges],
+            known_m_kg_s: vec![0.0; edges],
+            known: false,
             step: vec![0.0; edges],
-            trial: vec![0.0; edges],
-            trial_loss: vec![0.0; edges],
-            trial_slope: vec![1.0; edges],
+            trial_m_kg_s: vec![0.0; edges],
+            trial_laws: laws(),
         })
     }
 
@@ -142,81 +177,63 @@ impl HydraulicSolver {
             return Ok(HydraulicReport::default());
         }
         self.evaluate(network, state)?;
-        self.system.begin(network, state, &self.imposed)?;
+        self.system.begin(network, state, &self.kind)?;
         let mut mass_balanced = false;
         for iteration in 1..=MAX_ITERATIONS {
-            self.bound_slopes();
-            self.system.newton_step(
-                network,
-                state,
-                &self.loss,
-                &self.slope,
-                &self.imposed,
-                &mut self.step,
-            )?;
-            let largest_step = self.take_step(network, state, mass_balanced)?;
+            self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
+            let (largest_step, trial) = self.take_step(network, state, mass_balanced)?;
             mass_balanced = true;
-            let residual = self.system.residuals(network, state, &self.loss, &self.imposed);
-            if largest_step <= 1.0
-                && residual.edge_pa.0 <= RESIDUAL_PA + RESIDUAL_RELATIVE * residual.largest_p_pa
-                && residual.node_kg_s.0 <= MASS_RESIDUAL_KG_S
+            let largest_p_pa = self.system.largest_p_pa();
+            if (largest_step <= 1.0 || trial.correction <= CORRECTION_SHARE)
+                && trial.residual_pa <= RESIDUAL_PA + RESIDUAL_RELATIVE * largest_p_pa
             {
-                self.system.close(network, state);
-                self.check_references(network, state)?;
-                state.hydraulics_valid = true;
-                return Ok(HydraulicReport {
-                    iterations: iteration,
-                    residual_pa: residual.edge_pa.0,
-                    mass_residual_kg_s: residual.node_kg_s.0,
-                });
-            }
-            if iteration == MAX_ITERATIONS {
-                return Err(HydraulicError::NotConverged {
-                    iterations: iteration,
-                    edge: EdgeId::from_index(residual.edge_pa.1),
-                    residual_pa: residual.edge_pa.0,
-                    node: NodeId::from_index(residual.node_kg_s.1),
-                    mass_residual_kg_s: residual.node_kg_s.0,
-                });
+                let (mass_residual_kg_s, _) = self.system.mass_residual(state);
+                if mass_residual_kg_s <= MASS_RESIDUAL_KG_S {
+                    self.known_m_kg_s.copy_from_slice(&state.m_flow_kg_s);
+                    self.known = true;
+                    self.system.close(network, state);
+                    self.check_references(network, state)?;
+                    state.hydraulics_valid = true;
+                    return Ok(HydraulicReport {
+                        iterations: iteration,
+                        residual_pa: trial.residual_pa,
+                        mass_residual_kg_s,
+                    });
+                }
             }
         }
-        unreachable!("the loop returns in its last iteration")
+        Err(self.not_converged(network, state))
     }
 
-    /// Law of every edge at the flows of the state.
+    /// Law of every edge at the flows of the state; those that are known are kept.
     fn evaluate(
         &mut self,
         network: &Network,
         state: &mut NetworkState,
     ) -> Result<(), HydraulicError> {
+        let known = std::mem::replace(&mut self.known, false);
         for (i, edge) in network.edges.iter().enumerate() {
-            let law = edge.characteristic(state.m_flow_kg_s[i], &state.edge_state(network, i));
-            let finite = match law {
-                Characteristic::PressureLoss(law) => {
-                    (self.loss[i], self.slope[i], self.imposed[i]) = (law.value, law.slope, false);
-                    law.value.is_finite() && law.slope.is_finite()
-                }
+            let m = state.m_flow_kg_s[i];
+            let edge_state = state.edge_state(network, i);
+            if known && self.known_m_kg_s[i] == m && self.known_state[i] == edge_state {
+                continue;
+            }
+            self.known_state[i] = edge_state;
+            let (kind, law) = match edge.characteristic(m, &edge_state) {
+                Characteristic::PressureLoss(law) => (Kind::Law, law),
                 Characteristic::ImposedFlow { m_flow_kg_s } => {
-                    (self.loss[i], self.slope[i], self.imposed[i]) = (m_flow_kg_s, 1.0, true);
-                    m_flow_kg_s.is_finite()
+                    (Kind::Imposed, Linear::new(m_flow_kg_s, 1.0))
                 }
-                Characteristic::ImposedPressure { dp_pa } => {
-                    (self.loss[i], self.slope[i], self.imposed[i]) = (dp_pa, 1.0, false);
-                    dp_pa.is_finite()
-                }
+                Characteristic::ImposedPressure { dp_pa } => (Kind::Ideal, Linear::new(dp_pa, 1.0)),
             };
-            if !finite {
+            if !(law.value.is_finite() && law.slope.is_finite()) {
                 return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
             }
+            self.kind[i] = kind;
+            self.laws.loss[i] = law.value;
+            self.laws.slope[i] = law.slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
         }
         Ok(())
-    }
-
-    /// Bounds the slopes that the matrix sees.
-    fn bound_slopes(&mut self) {
-        for slope in &mut self.slope {
-            *slope = slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
-        }
     }
 
     /// Moves the flows along the Newton step; returns its largest size over the step tolerance.
@@ -225,66 +242,98 @@ impl HydraulicSolver {
         network: &Network,
         state: &mut NetworkState,
         line_search: bool,
-    ) -> Result<f64, HydraulicError> {
+    ) -> Result<(f64, Trial), HydraulicError> {
         let mut largest = 0.0_f64;
         // Slope of the content at the start of the step; pressures cancel, since the step has no net
         // inflow anywhere: g(alpha) = sum step (phi(m + alpha step) - (p_a - p_b) + rho g dz).
         let mut start = 0.0;
         for (i, step) in self.step.iter().enumerate() {
-            let m = state.m_flow_kg_s[i];
-            self.trial[i] = m + step;
-            largest = largest.max(step.abs() / (STEP_KG_S + STEP_RELATIVE * self.trial[i].abs()));
-            start -= step * step * self.slope[i];
+            let m = state.m_flow_kg_s[i] + step;
+            largest = largest.max(step.abs() / (STEP_KG_S + STEP_RELATIVE * m.abs()));
+            if self.kind[i] == Kind::Law {
+                start -= step * step * self.laws.slope[i];
+            }
         }
-        let mut content_slope = self.evaluate_trial(network, state)?;
-        if line_search && largest > 1.0 && content_slope > -CONTENT_SLOPE_SHARE * start {
+        let mut trial = self.evaluate_trial(network, state, 1.0)?;
+        if line_search && largest > 1.0 && trial.content_slope > -CONTENT_SLOPE_SHARE * start {
             // The full step overshoots the minimum of the content along it: false position.
             let (mut low, mut low_slope, mut high, mut high_slope) =
-                (0.0, start, 1.0, content_slope);
+                (0.0, start, 1.0, trial.content_slope);
             for _ in 0..MAX_LINE_SEARCH {
                 let secant = low + (high - low) * low_slope / (low_slope - high_slope);
                 let alpha = secant.clamp(low + 0.1 * (high - low), high - 0.1 * (high - low));
-                for (i, step) in self.step.iter().enumerate() {
-                    self.trial[i] = state.m_flow_kg_s[i] + alpha * step;
-                }
-                content_slope = self.evaluate_trial(network, state)?;
-                if content_slope.abs() <= -CONTENT_SLOPE_SHARE * start {
+                trial = self.evaluate_trial(network, state, alpha)?;
+                if trial.content_slope.abs() <= -CONTENT_SLOPE_SHARE * start {
                     break;
                 }
-                if content_slope < 0.0 {
-                    (low, low_slope) = (alpha, content_slope);
+                if trial.content_slope < 0.0 {
+                    (low, low_slope) = (alpha, trial.content_slope);
                 } else {
-                    (high, high_slope) = (alpha, content_slope);
+                    (high, high_slope) = (alpha, trial.content_slope);
                 }
             }
         }
-        std::mem::swap(&mut state.m_flow_kg_s, &mut self.trial);
-        std::mem::swap(&mut self.loss, &mut self.trial_loss);
-        std::mem::swap(&mut self.slope, &mut self.trial_slope);
-        Ok(largest)
+        std::mem::swap(&mut state.m_flow_kg_s, &mut self.trial_m_kg_s);
+        std::mem::swap(&mut self.laws, &mut self.trial_laws);
+        Ok((largest, trial))
     }
 
-    /// Laws at the trial flows and the slope of the content along the step there.
+    /// Laws at the flows that this share of the step leads to.
     fn evaluate_trial(
         &mut self,
         network: &Network,
         state: &NetworkState,
-    ) -> Result<f64, HydraulicError> {
-        let mut content_slope = 0.0;
+        share: f64,
+    ) -> Result<Trial, HydraulicError> {
+        let mut trial = Trial { content_slope: 0.0, residual_pa: 0.0, correction: 0.0 };
         for (i, edge) in network.edges.iter().enumerate() {
-            match edge.characteristic(self.trial[i], &state.edge_state(network, i)) {
-                Characteristic::PressureLoss(law) => {
-                    (self.trial_loss[i], self.trial_slope[i]) = (law.value, law.slope);
-                    let driving = state.dp_pa(network, i) - self.system.gravity_pa(i);
-                    content_slope += self.step[i] * (law.value - driving);
-                    if !law.value.is_finite() {
-                        return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
-                    }
-                }
-                _ => (self.trial_loss[i], self.trial_slope[i]) = (self.loss[i], self.slope[i]),
+            let m = state.m_flow_kg_s[i] + share * self.step[i];
+            self.trial_m_kg_s[i] = m;
+            if self.kind[i] != Kind::Law {
+                self.trial_laws.loss[i] = self.laws.loss[i];
+                self.trial_laws.slope[i] = self.laws.slope[i];
+                continue;
+            }
+            let Characteristic::PressureLoss(law) =
+                edge.characteristic(m, &state.edge_state(network, i))
+            else {
+                return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
+            };
+            let miss = self.system.driving_pa(state, i) - law.value;
+            let slope = law.slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
+            self.trial_laws.loss[i] = law.value;
+            self.trial_laws.slope[i] = slope;
+            trial.content_slope -= self.step[i] * miss;
+            let size = miss.abs();
+            if !size.is_finite() {
+                return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
+            }
+            trial.residual_pa = trial.residual_pa.max(size);
+            let tolerance = slope * (STEP_KG_S + STEP_RELATIVE * m.abs());
+            if size > trial.correction * tolerance {
+                trial.correction = size / tolerance;
             }
         }
-        Ok(content_slope)
+        Ok(trial)
+    }
+
+    /// Who is to blame at the iteration limit.
+    fn not_converged(&mut self, network: &Network, state: &NetworkState) -> HydraulicError {
+        let mut worst = (0.0, 0);
+        for i in 0..network.edges.len() {
+            let miss = (self.system.driving_pa(state, i) - self.laws.loss[i]).abs();
+            if self.kind[i] == Kind::Law && miss > worst.0 {
+                worst = (miss, i);
+            }
+        }
+        let (mass_residual_kg_s, node) = self.system.mass_residual(state);
+        HydraulicError::NotConverged {
+            iterations: MAX_ITERATIONS,
+            edge: EdgeId::from_index(worst.1),
+            residual_pa: worst.0,
+            node: NodeId::from_index(node),
+            mass_residual_kg_s,
+        }
     }
 
     /// A pressure reference exchanges no water.

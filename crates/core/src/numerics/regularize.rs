@@ -29,6 +29,20 @@ pub fn quadratic_slope_at_zero(coefficient: f64, m_turbulent: f64) -> f64 {
     0.375 * coefficient * m_turbulent
 }
 
+/// Smooth power law `coefficient m|m|^(exponent-1)` (1 < exponent < 3) above `m_turbulent` (> 0); below,
+/// with `x = m/m_turbulent`, the odd cubic `x ((3-n)/2 + (n-1)/2 x^2)` that joins it with its slope.
+#[inline]
+pub fn power(m: f64, coefficient: f64, exponent: f64, m_turbulent: f64) -> Linear {
+    if m.abs() >= m_turbulent {
+        let slope = coefficient * m.abs().powf(exponent - 1.0);
+        Linear::new(slope * m, exponent * slope)
+    } else {
+        let scale = coefficient * m_turbulent.powf(exponent - 1.0);
+        let (x, linear, cubic) = (m / m_turbulent, 0.5 * (3.0 - exponent), 0.5 * (exponent - 1.0));
+        Linear::new(scale * m * (linear + cubic * x * x), scale * (linear + 3.0 * cubic * x * x))
+    }
+}
+
 /// C1 step from 0 (x <= 0) to 1 (x >= 1): `x^2 (3 - 2x)`.
 #[inline]
 pub fn smoothstep(x: f64) -> f64 {

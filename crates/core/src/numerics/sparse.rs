@@ -1,12 +1,15 @@
 //! Sparse direct solvers on faer: symbolic analysis once, numeric refactorisation in place.
 //!
-//! [`SparseCholesky`] solves the nodal equations of the hydraulics (symmetric positive definite),
-//! [`SparseLu`] the node temperatures of thermally closed loops (unsymmetric). Neither allocates
-//! after its analysis. This is the only file that knows faer.
+//! [`SparseCholesky`] solves the nodal equations of the hydraulics (symmetric positive definite; its own
+//! recorded elimination where there is little fill-in), [`SparseLu`] the node temperatures of thermally
+//! closed loops (unsymmetric). Neither allocates after its analysis. This is the only file that knows
+//! faer.
 
+use super::elimination::Elimination;
 use crate::error::FactorError;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::{SupernodalThreshold, cholesky, lu};
+use faer::perm::PermRef;
+use faer::sparse::linalg::{SupernodalThreshold, amd, cholesky, lu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
@@ -53,10 +56,24 @@ impl Columns {
 
 /// Cholesky factorisation of a sparse symmetric positive definite matrix.
 pub struct SparseCholesky {
-    lower: Columns,
-    symbolic: cholesky::SymbolicCholesky<u32>,
-    factor: Vec<f64>,
-    scratch: MemBuffer,
+    n: usize,
+    method: Method,
+}
+
+/// Recorded updates where the matrix fills in little, faer's blocked factorisation where it does not.
+enum Method {
+    Recorded {
+        elimination: Elimination,
+        /// Place of each unknown in the order of elimination.
+        place: Vec<u32>,
+        ordered: Vec<f64>,
+    },
+    Blocked {
+        lower: Columns,
+        symbolic: cholesky::SymbolicCholesky<u32>,
+        factor: Vec<f64>,
+        scratch: MemBuffer,
+    },
 }
 
 impl SparseCholesky {
@@ -66,44 +83,73 @@ impl SparseCholesky {
     /// # Errors
     /// [`FactorError::Symbolic`] when the ordering fails.
     pub fn analyze(n: usize, pairs: &[(usize, usize)]) -> Result<Self, FactorError> {
+        let failed = FactorError::Symbolic { unknowns: n };
+        let lower = Columns::new(n, pairs.iter().map(|&(i, j)| (i.max(j), i.min(j))));
+        let (mut forward, mut place) = (vec![0_u32; n], vec![0_u32; n]);
+        let scratch = amd::order_maybe_unsorted_scratch::<u32>(n, lower.row.len());
+        amd::order_maybe_unsorted(
+            &mut forward,
+            &mut place,
+            lower.symbolic(),
+            amd::Control::default(),
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        )
+        .map_err(|_| failed)?;
+        let entries = pairs.iter().map(|&(i, j)| (place[i], place[j]));
+        if let Some(elimination) = Elimination::analyze(n, entries) {
+            return Ok(Self {
+                n,
+                method: Method::Recorded { elimination, place, ordered: vec![0.0; n] },
+            });
+        }
         let diagonal = (0..n).map(|i| (i, i));
         let lower =
             Columns::new(n, diagonal.chain(pairs.iter().map(|&(i, j)| (i.max(j), i.min(j)))));
         let symbolic = cholesky::factorize_symbolic_cholesky(
             lower.symbolic(),
             Side::Lower,
-            cholesky::SymmetricOrdering::Amd,
+            cholesky::SymmetricOrdering::Custom(PermRef::new_checked(&forward, &place, n)),
             cholesky::CholeskySymbolicParams::default(),
         )
-        .map_err(|_| FactorError::Symbolic { unknowns: n })?;
+        .map_err(|_| failed)?;
         let scratch = MemBuffer::new(
             symbolic
                 .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
                 .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq)),
         );
         let factor = vec![0.0; symbolic.len_val()];
-        Ok(Self { lower, symbolic, factor, scratch })
+        Ok(Self { n, method: Method::Blocked { lower, symbolic, factor, scratch } })
     }
 
     /// Where entry (i, j) is kept in [`Self::values_mut`]; `None` outside the pattern.
     pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
-        self.lower.slot(i.max(j), i.min(j))
+        match &self.method {
+            Method::Recorded { elimination, place, .. } => {
+                let (i, j) = (place[i] as usize, place[j] as usize);
+                elimination.slot(i.max(j), i.min(j))
+            }
+            Method::Blocked { lower, .. } => lower.slot(i.max(j), i.min(j)),
+        }
     }
 
-    /// The stored entries of the lower triangle, to be set before [`Self::factor`].
+    /// The stored entries of the lower triangle, all to be set before [`Self::factor`], which may
+    /// overwrite them.
     #[inline]
     pub fn values_mut(&mut self) -> &mut [f64] {
-        &mut self.lower.value
+        match &mut self.method {
+            Method::Recorded { elimination, .. } => elimination.values_mut(),
+            Method::Blocked { lower, .. } => &mut lower.value,
+        }
     }
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.lower.n
+        self.n
     }
 
     /// Whether there is nothing to solve.
     pub fn is_empty(&self) -> bool {
-        self.lower.n == 0
+        self.n == 0
     }
 
     /// Factorises the present values.
@@ -111,35 +157,52 @@ impl SparseCholesky {
     /// # Errors
     /// [`FactorError::Singular`] when the matrix is not positive definite.
     pub fn factor(&mut self) -> Result<(), FactorError> {
-        if self.is_empty() {
-            return Ok(());
+        let singular = FactorError::Singular { unknowns: self.n };
+        match &mut self.method {
+            Method::Recorded { elimination, .. } => {
+                if elimination.factor() {
+                    Ok(())
+                } else {
+                    Err(singular)
+                }
+            }
+            Method::Blocked { lower, symbolic, factor, scratch } => symbolic
+                .factorize_numeric_llt(
+                    factor,
+                    lower.matrix(),
+                    Side::Lower,
+                    Default::default(),
+                    Par::Seq,
+                    MemStack::new(scratch),
+                    Default::default(),
+                )
+                .map(|_| ())
+                .map_err(|_| singular),
         }
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut self.factor,
-                self.lower.matrix(),
-                Side::Lower,
-                Default::default(),
-                Par::Seq,
-                MemStack::new(&mut self.scratch),
-                Default::default(),
-            )
-            .map(|_| ())
-            .map_err(|_| FactorError::Singular { unknowns: self.lower.n })
     }
 
     /// Solves with the last factorisation: right-hand side in, solution out.
     pub fn solve_in_place(&mut self, x: &mut [f64]) {
-        if self.is_empty() {
-            return;
+        let n = self.n;
+        match &mut self.method {
+            Method::Recorded { elimination, place, ordered } => {
+                for (&place, &x) in place.iter().zip(&*x) {
+                    ordered[place as usize] = x;
+                }
+                elimination.solve_in_place(ordered);
+                for (&place, x) in place.iter().zip(x) {
+                    *x = ordered[place as usize];
+                }
+            }
+            Method::Blocked { symbolic, factor, scratch, .. } => {
+                cholesky::LltRef::new(symbolic, factor).solve_in_place_with_conj(
+                    Conj::No,
+                    MatMut::from_column_major_slice_mut(x, n, 1),
+                    Par::Seq,
+                    MemStack::new(scratch),
+                );
+            }
         }
-        let n = self.lower.n;
-        cholesky::LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.scratch),
-        );
     }
 }
 
@@ -229,6 +292,7 @@ mod tests {
         let mut solver = SparseCholesky::analyze(3, &[(0, 1), (2, 1)]).unwrap();
         let entries = [(0, 0, 3.0), (1, 1, 5.0), (2, 2, 3.0), (0, 1, -2.0), (1, 2, -3.0)];
         for round in 1..=2 {
+            solver.values_mut().fill(0.0);
             for (i, j, value) in entries {
                 let slot = solver.slot(i, j).unwrap();
                 solver.values_mut()[slot] = value * f64::from(round);
@@ -241,10 +305,47 @@ mod tests {
             }
         }
         assert_eq!(solver.slot(0, 2), None);
-        for value in solver.values_mut() {
-            *value = 0.0;
-        }
+        solver.values_mut().fill(0.0);
         assert_eq!(solver.factor(), Err(FactorError::Singular { unknowns: 3 }));
+    }
+
+    #[test]
+    fn recorded_and_blocked_elimination_agree_with_the_matrix() {
+        // A chain fills in little, a 30 x 30 grid much; both: A x = b for x_i = sin i.
+        let grid = |i: usize, j: usize| 30 * i + j;
+        let mut grid_pairs = Vec::new();
+        for i in 0..30 {
+            for j in 0..30 {
+                grid_pairs.extend((i > 0).then(|| (grid(i, j), grid(i - 1, j))));
+                grid_pairs.extend((j > 0).then(|| (grid(i, j), grid(i, j - 1))));
+            }
+        }
+        let chain_pairs: Vec<_> = (1..900).map(|i| (i - 1, i)).collect();
+        for (pairs, recorded) in [(chain_pairs, true), (grid_pairs, false)] {
+            let mut solver = SparseCholesky::analyze(900, &pairs).unwrap();
+            assert_eq!(matches!(solver.method, Method::Recorded { .. }), recorded);
+            let x: Vec<f64> = (0..900).map(|i| f64::from(i).sin()).collect();
+            let mut b = vec![0.0; 900];
+            let mut add = |i: usize, j: usize, value: f64| {
+                let slot = solver.slot(i, j).unwrap();
+                solver.values_mut()[slot] += value;
+                b[i] += value * x[j];
+                if i != j {
+                    b[j] += value * x[i];
+                }
+            };
+            (0..900).for_each(|i| add(i, i, 1e-3));
+            for (k, &(i, j)) in pairs.iter().enumerate() {
+                let conductance = 1.0 + (k % 7) as f64;
+                add(i, i, conductance);
+                add(j, j, conductance);
+                add(i, j, -conductance);
+            }
+            solver.factor().unwrap();
+            solver.solve_in_place(&mut b);
+            let worst = x.iter().zip(&b).map(|(x, b)| (x - b).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-10, "{worst}");
+        }
     }
 
     #[test]

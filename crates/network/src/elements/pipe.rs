@@ -2,27 +2,33 @@
 //!
 //! **Equation** `dp = (f(Re) L/d + zeta) rho/2 v|v|`, `v = 4 m/(pi rho d^2)`,
 //! `Re = 4|m|/(pi d mu)`; f from [`crate::friction`]. With `fixed_velocity_m_s` the factor is frozen
-//! at that velocity: `dp = K m|m|`. Heat: parcels cool towards the surroundings with
-//! `tau = R rho A cp`, R the insulation resistance per length in K m/W.
+//! at that velocity: `dp = K m|m|`. Hazen-Williams and Chezy-Manning give `dp = K m|m|^(n-1)`. Heat:
+//! parcels cool towards the surroundings with `tau = R rho A cp`, R the insulation resistance per length
+//! in K m/W.
 //!
 //! **Assumptions** full pipe, one bore, no axial conduction, no inertia. **Validity** all Re.
 //!
 //! **Numerics** laminar flow is linear, so friction needs no regularisation; fittings are regularised
-//! below Re = 2000, the fixed coefficient below `delta_m` times the nominal flow.
+//! below Re = 2000, the fixed coefficient below `delta_m` times the nominal flow, the power laws below
+//! 1 mm/s.
 //!
-//! **Sources** `licklederer2021`, `wetter2014`.
+//! **Sources** `licklederer2021`, `wetter2014`, `rossman2020`.
 
-use crate::friction::{Correlation, RE_LAMINAR, Transition, friction_factor};
+use crate::friction::{Correlation, DarcyFriction, PowerFriction, RE_LAMINAR, Transition};
+use crate::graph::GRAVITY_M_S2;
 use crate::two_port::{
     Characteristic, EdgeState, EdgeThermal, ElementError, PlugFlowPipe, TwoPort, not_negative,
     positive,
 };
 use anergy_core::linear::Linear;
 use anergy_core::medium::Medium;
-use anergy_core::numerics::regularize::quadratic;
+use anergy_core::numerics::regularize::{power, quadratic};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+
+/// Below this velocity a power law is regularised.
+const POWER_LAW_VELOCITY_M_S: f64 = 1e-3;
 
 /// A pipe as written in a model file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,6 +50,12 @@ pub struct PipeParams {
     /// Passage from laminar to turbulent flow.
     #[serde(default)]
     pub transition: Transition,
+    /// Roughness coefficient C of Hazen-Williams; with `friction = "hazen_williams"` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hazen_williams_c: Option<f64>,
+    /// Manning's n, s/m^(1/3); with `friction = "chezy_manning"` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manning_n: Option<f64>,
     /// Freezes the friction factor at this velocity, m/s: a purely quadratic law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fixed_velocity_m_s: Option<f64>,
@@ -78,6 +90,8 @@ impl Default for PipeParams {
             zeta: 0.0,
             friction: Correlation::default(),
             transition: Transition::default(),
+            hazen_williams_c: None,
+            manning_n: None,
             fixed_velocity_m_s: None,
             delta_m: default_delta_m(),
             insulation_resistance_k_m_w: None,
@@ -89,19 +103,25 @@ impl Default for PipeParams {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Law {
-    Reynolds { correlation: Correlation, transition: Transition },
-    Fixed { friction_factor: f64, m_turbulent_kg_s: f64 },
+    /// `dp = f(Re) friction_per_kg m|m|/rho` and fittings.
+    Darcy { friction: DarcyFriction },
+    /// `dp = coefficient m|m|/rho`, fittings included.
+    Fixed { coefficient: f64, m_turbulent_kg_s: f64 },
+    /// `dp = coefficient rho (m/rho)^n` and fittings.
+    Power { coefficient: f64, exponent: f64, v_turbulent_m3_s: f64 },
 }
 
 /// A pipe ready to be solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pipe {
     length_m: f64,
-    diameter_m: f64,
-    relative_roughness: f64,
-    zeta: f64,
-    area_m2: f64,
     law: Law,
+    /// `Re mu/|m|`, 1/m.
+    re_m: f64,
+    /// `L/d/(2 A^2)`, 1/m4: friction factor 1 gives this times `m|m|/rho`.
+    friction_per_m4: f64,
+    /// `zeta/(2 A^2)`, 1/m4.
+    fittings_per_m4: f64,
     thermal: PlugFlowPipe,
     m_flow_nominal_kg_s: f64,
 }
@@ -128,19 +148,35 @@ impl PipeParams {
         let velocity = self.fixed_velocity_m_s.map(|v| positive("fixed_velocity_m_s", v));
         let m_flow_nominal_kg_s =
             velocity.clone().transpose()?.unwrap_or(0.5) * area_m2 * medium.density_kg_m3;
-        let law = match velocity.transpose()? {
-            None => Law::Reynolds { correlation: self.friction, transition: self.transition },
-            Some(v) => {
-                let re = v * diameter_m * medium.density_kg_m3 / medium.viscosity_pa_s;
-                Law::Fixed {
-                    friction_factor: friction_factor(
-                        self.friction,
-                        self.transition,
-                        re,
-                        relative_roughness,
-                    )
-                    .value,
-                    m_turbulent_kg_s: self.delta_m * m_flow_nominal_kg_s,
+        let re_m = 4.0 / (PI * diameter_m);
+        let friction_per_m4 = length_m / diameter_m / (2.0 * area_m2 * area_m2);
+        let fittings_per_m4 = self.zeta / (2.0 * area_m2 * area_m2);
+        let law = match (self.power_friction(diameter_m)?, velocity.transpose()?) {
+            (Some(_), Some(_)) => {
+                return Err(ElementError::Fields {
+                    problem:
+                        "fixed_velocity_m_s freezes a Darcy friction factor: a power law has none"
+                            .into(),
+                });
+            }
+            (Some(law), None) => Law::Power {
+                coefficient: law.coefficient * length_m * GRAVITY_M_S2,
+                exponent: law.exponent,
+                v_turbulent_m3_s: POWER_LAW_VELOCITY_M_S * area_m2,
+            },
+            (None, velocity) => {
+                let friction =
+                    DarcyFriction::new(self.friction, self.transition, relative_roughness);
+                match velocity {
+                    None => Law::Darcy { friction },
+                    Some(v) => {
+                        let re = v * diameter_m * medium.density_kg_m3 / medium.viscosity_pa_s;
+                        let factor = friction.factor(re).value;
+                        Law::Fixed {
+                            coefficient: factor * friction_per_m4 + fittings_per_m4,
+                            m_turbulent_kg_s: self.delta_m * m_flow_nominal_kg_s,
+                        }
+                    }
                 }
             }
         };
@@ -157,51 +193,78 @@ impl PipeParams {
         };
         Ok(Pipe {
             length_m,
-            diameter_m,
-            relative_roughness,
-            zeta: self.zeta,
-            area_m2,
             law,
+            re_m,
+            friction_per_m4,
+            fittings_per_m4,
             thermal,
             m_flow_nominal_kg_s,
         })
+    }
+    /// The power law, with exactly the coefficient that it needs.
+    fn power_friction(&self, diameter_m: f64) -> Result<Option<PowerFriction>, ElementError> {
+        let problem = |problem: &str| Err(ElementError::Fields { problem: problem.into() });
+        if self.transition == Transition::Dunlop && self.friction != Correlation::SwameeJain {
+            return problem("transition = \"dunlop\" needs friction = \"swamee_jain\"");
+        }
+        match (self.friction, self.hazen_williams_c, self.manning_n) {
+            (Correlation::HazenWilliams, Some(c), None) => {
+                let c = positive("hazen_williams_c", c)?;
+                Ok(Some(PowerFriction::hazen_williams(c, diameter_m)))
+            }
+            (Correlation::ChezyManning, None, Some(n)) => {
+                let n = positive("manning_n", n)?;
+                Ok(Some(PowerFriction::chezy_manning(n, diameter_m)))
+            }
+            (Correlation::HazenWilliams, ..) => {
+                problem("friction = \"hazen_williams\" needs hazen_williams_c and no manning_n")
+            }
+            (Correlation::ChezyManning, ..) => {
+                problem("friction = \"chezy_manning\" needs manning_n and no hazen_williams_c")
+            }
+            (_, None, None) => Ok(None),
+            (_, Some(_), _) => problem("hazen_williams_c needs friction = \"hazen_williams\""),
+            (_, None, Some(_)) => problem("manning_n needs friction = \"chezy_manning\""),
+        }
     }
 }
 
 impl TwoPort for Pipe {
     fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
-        // rho/2 v|v| = m|m| / (2 rho A^2)
-        let dynamic = 1.0 / (2.0 * state.density_kg_m3 * self.area_m2 * self.area_m2);
-        let slenderness = self.length_m / self.diameter_m;
-        let loss = match self.law {
-            Law::Fixed { friction_factor, m_turbulent_kg_s } => quadratic(
-                m,
-                (friction_factor * slenderness + self.zeta) * dynamic,
-                m_turbulent_kg_s,
-            ),
-            Law::Reynolds { correlation, transition } => {
-                let re_per_m = 4.0 / (PI * self.diameter_m * state.viscosity_pa_s);
-                let re = re_per_m * m.abs();
-                let friction = if re <= RE_LAMINAR {
-                    // f = 64/Re: dp = 64/re_per_m L/d dynamic m, linear through zero
-                    let slope = 64.0 / re_per_m * slenderness * dynamic;
+        let per_density = 1.0 / state.density_kg_m3;
+        let friction = match &self.law {
+            Law::Fixed { coefficient, m_turbulent_kg_s } => {
+                let loss = quadratic(m, coefficient * per_density, *m_turbulent_kg_s);
+                return Characteristic::PressureLoss(loss);
+            }
+            Law::Darcy { friction } => {
+                let size = m.abs();
+                let factor = self.friction_per_m4 * per_density;
+                let re_per_kg_s = self.re_m / state.viscosity_pa_s;
+                let re = re_per_kg_s * size;
+                if re <= RE_LAMINAR {
+                    // f = 64/Re: linear through zero
+                    let slope = 64.0 / re_per_kg_s * factor;
                     Linear::new(slope * m, slope)
                 } else {
-                    let f = friction_factor(correlation, transition, re, self.relative_roughness);
-                    let factor = slenderness * dynamic;
+                    let f = friction.factor(re);
                     Linear::new(
-                        f.value * factor * m * m.abs(),
-                        factor * (f.slope * re_per_m * m * m + 2.0 * f.value * m.abs()),
+                        f.value * factor * m * size,
+                        factor * size * (f.slope * re + 2.0 * f.value),
                     )
-                };
-                if self.zeta > 0.0 {
-                    friction + quadratic(m, self.zeta * dynamic, RE_LAMINAR / re_per_m)
-                } else {
-                    friction
                 }
             }
+            Law::Power { coefficient, exponent, v_turbulent_m3_s } => {
+                let law = power(m * per_density, *coefficient, *exponent, *v_turbulent_m3_s);
+                Linear::new(law.value * state.density_kg_m3, law.slope)
+            }
         };
-        Characteristic::PressureLoss(loss)
+        if self.fittings_per_m4 == 0.0 {
+            return Characteristic::PressureLoss(friction);
+        }
+        let m_turbulent = RE_LAMINAR * state.viscosity_pa_s / self.re_m;
+        let fittings = quadratic(m, self.fittings_per_m4 * per_density, m_turbulent);
+        Characteristic::PressureLoss(friction + fittings)
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {

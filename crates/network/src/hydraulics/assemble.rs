@@ -2,7 +2,7 @@
 
 use super::ideal::{IdealLink, ideal_forest};
 use crate::graph::{Network, NodeKind, UnionFind};
-use crate::hydraulics::HydraulicError;
+use crate::hydraulics::{HydraulicError, Kind, Laws};
 use crate::state::NetworkState;
 use anergy_core::ids::NodeId;
 use anergy_core::numerics::sparse::SparseCholesky;
@@ -13,18 +13,13 @@ const NONE: u32 = u32::MAX;
 /// Where an edge enters the matrix.
 #[derive(Debug, Clone, Copy)]
 struct EdgeSlots {
+    node_a: u32,
+    node_b: u32,
     unknown_a: u32,
     unknown_b: u32,
     diagonal_a: u32,
     diagonal_b: u32,
     off_diagonal: u32,
-}
-
-/// Largest residuals and where.
-pub(super) struct Residuals {
-    pub edge_pa: (f64, usize),
-    pub node_kg_s: (f64, usize),
-    pub largest_p_pa: f64,
 }
 
 pub(super) struct NodalSystem {
@@ -34,16 +29,17 @@ pub(super) struct NodalSystem {
     unknown_of_node: Vec<u32>,
     diagonal: Vec<u32>,
     gravity_pa: Vec<f64>,
-    ideal: Vec<bool>,
     ideal_links: Vec<IdealLink>,
     increment: Vec<f64>,
     net_inflow: Vec<f64>,
+    /// Nodes with a given flow.
+    sources: Vec<u32>,
+    largest_p_pa: f64,
     /// Islands behind imposed flows: found again when the imposed edges change.
-    imposed_before: Vec<bool>,
+    kind_before: Vec<Kind>,
     islands: UnionFind,
     island_fixed: Vec<bool>,
     floating: Vec<u32>,
-    first: bool,
 }
 
 impl NodalSystem {
@@ -84,8 +80,10 @@ impl NodalSystem {
             cholesky.slot(a as usize, b as usize).map_or(NONE, |slot| slot as u32)
         };
         let slots = (0..edges)
-            .map(ends)
-            .map(|(a, b)| EdgeSlots {
+            .map(|i| (i, ends(i)))
+            .map(|(i, (a, b))| EdgeSlots {
+                node_a: network.edges[i].from.0,
+                node_b: network.edges[i].to.0,
                 unknown_a: a,
                 unknown_b: b,
                 diagonal_a: slot(a, a),
@@ -109,22 +107,32 @@ impl NodalSystem {
             unknown_of_node,
             diagonal,
             gravity_pa,
-            ideal: network.edges.iter().map(|edge| network.is_ideal(edge)).collect(),
             ideal_links: ideal_forest(network),
             increment: vec![0.0; count as usize],
             net_inflow: vec![0.0; n],
-            imposed_before: vec![false; edges],
+            sources: (0..n as u32)
+                .filter(|&i| network.nodes[i as usize].kind == NodeKind::Source)
+                .collect(),
+            largest_p_pa: 0.0,
+            kind_before: Vec::with_capacity(edges),
             islands: UnionFind::new(n),
             island_fixed: vec![false; n],
             floating: Vec::with_capacity(n),
-            first: true,
         })
     }
 
-    /// Hydrostatic part of the pressure difference of an edge, Pa.
+    /// Pressure difference of an edge without its hydrostatic part, Pa: what its law has to answer.
     #[inline]
-    pub(super) fn gravity_pa(&self, edge: usize) -> f64 {
-        self.gravity_pa[edge]
+    pub(super) fn driving_pa(&self, state: &NetworkState, edge: usize) -> f64 {
+        let slots = &self.slots[edge];
+        state.p_pa[slots.node_a as usize]
+            - state.p_pa[slots.node_b as usize]
+            - self.gravity_pa[edge]
+    }
+
+    /// Largest absolute pressure after the last step, Pa.
+    pub(super) fn largest_p_pa(&self) -> f64 {
+        self.largest_p_pa
     }
 
     /// Puts given pressures and ideal heads into the state and finds floating islands.
@@ -132,7 +140,7 @@ impl NodalSystem {
         &mut self,
         network: &Network,
         state: &mut NetworkState,
-        imposed: &[bool],
+        kind: &[Kind],
     ) -> Result<(), HydraulicError> {
         for (i, node) in network.nodes.iter().enumerate() {
             if node.has_fixed_pressure() {
@@ -151,17 +159,18 @@ impl NodalSystem {
                 state.p_pa[parent] + drop
             };
         }
-        if self.first || self.imposed_before != imposed {
-            self.first = false;
-            self.imposed_before.copy_from_slice(imposed);
-            self.find_islands(network, imposed);
+        if self.kind_before != kind {
+            self.kind_before.clear();
+            self.kind_before.extend_from_slice(kind);
+            self.find_islands(network, kind);
         }
-        self.check_islands(network, state, imposed)
+        self.check_islands(network, state, kind)
     }
 
-    fn find_islands(&mut self, network: &Network, imposed: &[bool]) {
+    fn find_islands(&mut self, network: &Network, kind: &[Kind]) {
         self.islands.reset();
-        for (edge, _) in network.edges.iter().zip(imposed).filter(|(_, imposed)| !**imposed) {
+        let joining = |(_, kind): &(_, &Kind)| **kind != Kind::Imposed;
+        for (edge, _) in network.edges.iter().zip(kind).filter(joining) {
             self.islands.union(edge.from.index(), edge.to.index());
         }
         self.island_fixed.fill(false);
@@ -182,13 +191,14 @@ impl NodalSystem {
         &mut self,
         network: &Network,
         state: &NetworkState,
-        imposed: &[bool],
+        kind: &[Kind],
     ) -> Result<(), HydraulicError> {
         if self.floating.is_empty() {
             return Ok(());
         }
         self.net_inflow.fill(0.0);
-        for (i, edge) in network.edges.iter().enumerate().filter(|(i, _)| imposed[*i]) {
+        let imposed = |(i, _): &(usize, _)| kind[*i] == Kind::Imposed;
+        for (i, edge) in network.edges.iter().enumerate().filter(imposed) {
             let m = match edge.characteristic(0.0, &state.edge_state(network, i)) {
                 crate::two_port::Characteristic::ImposedFlow { m_flow_kg_s } => m_flow_kg_s,
                 _ => 0.0,
@@ -218,127 +228,89 @@ impl NodalSystem {
     /// Assembles and solves one Newton step: pressures are moved, `step` receives the flows' change.
     pub(super) fn newton_step(
         &mut self,
-        network: &Network,
         state: &mut NetworkState,
-        loss: &[f64],
-        slope: &[f64],
-        imposed: &[bool],
+        kind: &[Kind],
+        laws: &Laws,
         step: &mut [f64],
     ) -> Result<(), HydraulicError> {
-        self.increment.fill(0.0);
-        self.cholesky.values_mut().fill(0.0);
-        for (node, &unknown) in
-            network.nodes.iter().zip(&self.unknown_of_node).enumerate().filter_map(
-                |(i, (node, unknown))| {
-                    (node.kind == NodeKind::Source && *unknown != NONE).then_some((i, unknown))
-                },
-            )
-        {
-            self.increment[unknown as usize] += state.given_m_flow_kg_s[node];
-        }
+        self.start_balance(state);
+        let values = self.cholesky.values_mut();
+        values.fill(0.0);
         let mut largest_conductance = 0.0_f64;
-        for (i, edge) in network.edges.iter().enumerate() {
-            if self.ideal[i] {
-                step[i] = 0.0;
-                continue;
-            }
-            let slots = self.slots[i];
+        for (i, slots) in self.slots.iter().enumerate() {
             let m = state.m_flow_kg_s[i];
-            if imposed[i] {
-                step[i] = loss[i] - m;
-            } else {
-                let conductance = 1.0 / slope[i];
-                largest_conductance = largest_conductance.max(conductance);
-                let dp = state.p_pa[edge.from.index()] - state.p_pa[edge.to.index()];
-                step[i] = conductance * (dp - self.gravity_pa[i] - loss[i]);
-                let values = self.cholesky.values_mut();
-                if slots.unknown_a != slots.unknown_b {
-                    if slots.diagonal_a != NONE {
-                        values[slots.diagonal_a as usize] += conductance;
-                    }
-                    if slots.diagonal_b != NONE {
-                        values[slots.diagonal_b as usize] += conductance;
-                    }
-                    if slots.off_diagonal != NONE {
-                        values[slots.off_diagonal as usize] -= conductance;
-                    }
+            step[i] = match kind[i] {
+                Kind::Ideal => {
+                    step[i] = 0.0;
+                    continue;
                 }
-            }
-            let flow = m + step[i];
-            if slots.unknown_a != NONE {
-                self.increment[slots.unknown_a as usize] -= flow;
-            }
-            if slots.unknown_b != NONE {
-                self.increment[slots.unknown_b as usize] += flow;
-            }
+                Kind::Imposed => laws.loss[i] - m,
+                Kind::Law => {
+                    let conductance = 1.0 / laws.slope[i];
+                    largest_conductance = largest_conductance.max(conductance);
+                    if slots.unknown_a != slots.unknown_b {
+                        if slots.diagonal_a != NONE {
+                            values[slots.diagonal_a as usize] += conductance;
+                        }
+                        if slots.diagonal_b != NONE {
+                            values[slots.diagonal_b as usize] += conductance;
+                        }
+                        if slots.off_diagonal != NONE {
+                            values[slots.off_diagonal as usize] -= conductance;
+                        }
+                    }
+                    let dp = state.p_pa[slots.node_a as usize] - state.p_pa[slots.node_b as usize];
+                    conductance * (dp - self.gravity_pa[i] - laws.loss[i])
+                }
+            };
+            balance(&mut self.increment, slots, m + step[i]);
         }
         // An island without fixed pressure keeps its level: no flow passes this conductance.
         for &root in &self.floating {
-            let unknown = self.unknown_of_node[root as usize];
-            let slot = self.diagonal[unknown as usize];
-            self.cholesky.values_mut()[slot as usize] += largest_conductance.max(1e-12);
+            let slot = self.diagonal[self.unknown_of_node[root as usize] as usize];
+            values[slot as usize] += largest_conductance.max(1e-12);
         }
         self.cholesky.factor()?;
         self.cholesky.solve_in_place(&mut self.increment);
+        self.largest_p_pa = 0.0;
         for (p, &unknown) in state.p_pa.iter_mut().zip(&self.unknown_of_node) {
             if unknown != NONE {
                 *p += self.increment[unknown as usize];
             }
+            self.largest_p_pa = self.largest_p_pa.max(p.abs());
         }
-        for (i, slots) in self.slots.iter().enumerate() {
-            if imposed[i] || self.ideal[i] {
-                continue;
-            }
+        for (i, slots) in self.slots.iter().enumerate().filter(|(i, _)| kind[*i] == Kind::Law) {
             let at = |unknown: u32| {
                 if unknown == NONE { 0.0 } else { self.increment[unknown as usize] }
             };
-            step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / slope[i];
+            step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / laws.slope[i];
         }
         Ok(())
     }
 
-    /// Largest misses of the edge laws and of the mass balances.
-    pub(super) fn residuals(
-        &mut self,
-        network: &Network,
-        state: &NetworkState,
-        loss: &[f64],
-        imposed: &[bool],
-    ) -> Residuals {
-        let mut worst = Residuals { edge_pa: (0.0, 0), node_kg_s: (0.0, 0), largest_p_pa: 0.0 };
+    /// What sources bring to each unknown.
+    fn start_balance(&mut self, state: &NetworkState) {
         self.increment.fill(0.0);
-        for (i, edge) in network.edges.iter().enumerate() {
-            if self.ideal[i] {
-                continue;
-            }
-            let m = state.m_flow_kg_s[i];
-            if !imposed[i] {
-                let dp = state.p_pa[edge.from.index()] - state.p_pa[edge.to.index()];
-                let miss = (dp - self.gravity_pa[i] - loss[i]).abs();
-                if miss > worst.edge_pa.0 || miss.is_nan() {
-                    worst.edge_pa = (miss, i);
-                }
-            }
-            let slots = self.slots[i];
-            if slots.unknown_a != NONE {
-                self.increment[slots.unknown_a as usize] -= m;
-            }
-            if slots.unknown_b != NONE {
-                self.increment[slots.unknown_b as usize] += m;
+        for &node in &self.sources {
+            let unknown = self.unknown_of_node[node as usize];
+            if unknown != NONE {
+                self.increment[unknown as usize] += state.given_m_flow_kg_s[node as usize];
             }
         }
-        for (i, node) in network.nodes.iter().enumerate() {
-            worst.largest_p_pa = worst.largest_p_pa.max(state.p_pa[i].abs());
-            let unknown = self.unknown_of_node[i];
-            if unknown != NONE && node.kind == NodeKind::Source {
-                self.increment[unknown as usize] += state.given_m_flow_kg_s[i];
-            }
+    }
+
+    /// Largest miss of the mass balances, kg/s, and a node where it is.
+    pub(super) fn mass_residual(&mut self, state: &NetworkState) -> (f64, usize) {
+        self.start_balance(state);
+        for (slots, &m) in self.slots.iter().zip(&state.m_flow_kg_s) {
+            balance(&mut self.increment, slots, m);
         }
+        let mut worst = (0.0, 0);
         for (i, &unknown) in self.unknown_of_node.iter().enumerate() {
             if unknown != NONE {
                 let miss = self.increment[unknown as usize].abs();
-                if miss > worst.node_kg_s.0 || miss.is_nan() {
-                    worst.node_kg_s = (miss, i);
+                if miss > worst.0 || miss.is_nan() {
+                    worst = (miss, i);
                 }
             }
         }
@@ -349,7 +321,7 @@ impl NodalSystem {
     pub(super) fn close(&mut self, network: &Network, state: &mut NetworkState) {
         self.net_inflow.fill(0.0);
         for (i, edge) in network.edges.iter().enumerate() {
-            if !self.ideal[i] {
+            if !network.is_ideal(edge) {
                 self.net_inflow[edge.from.index()] -= state.m_flow_kg_s[i];
                 self.net_inflow[edge.to.index()] += state.m_flow_kg_s[i];
             }
@@ -374,5 +346,16 @@ impl NodalSystem {
                 state.exchange_kg_s[i] = -self.net_inflow[i];
             }
         }
+    }
+}
+
+/// Adds the flow of an edge to the balances of its ends.
+#[inline]
+fn balance(net_inflow: &mut [f64], slots: &EdgeSlots, m_flow_kg_s: f64) {
+    if slots.unknown_a != NONE {
+        net_inflow[slots.unknown_a as usize] -= m_flow_kg_s;
+    }
+    if slots.unknown_b != NONE {
+        net_inflow[slots.unknown_b as usize] += m_flow_kg_s;
     }
 }
