@@ -1,0 +1,147 @@
+//! Relative flow coefficient of a valve over its stroke, and back: the equations are in [`super`].
+//!
+//! What does not depend on the stroke is computed once: the solver asks for the coefficient in every
+//! iteration of every step.
+
+use anergy_core::numerics::interpolate::cubic_hermite;
+
+/// Width of the linear foot of the equal-percentage characteristic.
+pub(super) const FOOT: f64 = 0.01;
+/// Halvings of an interval of the stroke until neighbouring numbers are left.
+const BISECTIONS: u32 = 60;
+
+/// A characteristic that rises strictly from the leakage to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Curve {
+    leakage: f64,
+    shape: Shape,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Shape {
+    Linear,
+    EqualPercentage(EqualPercentage),
+}
+
+/// `phi = R^(y - 1)` above a linear foot.
+#[derive(Debug, Clone, PartialEq)]
+struct EqualPercentage {
+    ln_rangeability: f64,
+    foot_slope: f64,
+    /// Stroke, phi and slope at the ends of the blend.
+    blend_from: (f64, f64, f64),
+    blend_to: (f64, f64, f64),
+}
+
+impl Curve {
+    /// `phi = l + (1 - l) y`.
+    pub(super) fn linear(leakage: f64) -> Self {
+        Self { leakage, shape: Shape::Linear }
+    }
+
+    /// Equal percentage with a rangeability; the leakage is below that of the foot.
+    pub(super) fn equal_percentage(leakage: f64, rangeability: f64) -> Self {
+        let ln_rangeability = rangeability.ln();
+        let foot_slope = (((FOOT - 1.0) * ln_rangeability).exp() - leakage) / FOOT;
+        let (from, to) = (0.5 * FOOT, 1.5 * FOOT);
+        let end = ((to - 1.0) * ln_rangeability).exp();
+        let shape = Shape::EqualPercentage(EqualPercentage {
+            ln_rangeability,
+            foot_slope,
+            blend_from: (from, leakage + from * foot_slope, foot_slope),
+            blend_to: (to, end, end * ln_rangeability),
+        });
+        Self { leakage, shape }
+    }
+
+    /// Relative flow coefficient at an opening.
+    pub(super) fn phi(&self, y: f64) -> f64 {
+        let l = self.leakage;
+        match &self.shape {
+            Shape::Linear => l + (1.0 - l) * y,
+            Shape::EqualPercentage(curve) => {
+                if y <= curve.blend_from.0 {
+                    l + y * curve.foot_slope
+                } else if y >= curve.blend_to.0 {
+                    ((y - 1.0) * curve.ln_rangeability).exp()
+                } else {
+                    cubic_hermite(y, curve.blend_from, curve.blend_to).value
+                }
+            }
+        }
+    }
+
+    /// Opening with a relative flow coefficient.
+    pub(super) fn opening(&self, phi: f64) -> f64 {
+        let l = self.leakage;
+        if phi <= l {
+            return 0.0;
+        }
+        match &self.shape {
+            Shape::Linear => ((phi - l) / (1.0 - l)).min(1.0),
+            Shape::EqualPercentage(curve) => {
+                let y = 1.0 + phi.ln() / curve.ln_rangeability;
+                if y >= curve.blend_to.0 { y.min(1.0) } else { self.bisect(phi, curve.blend_to.0) }
+            }
+        }
+    }
+
+    /// Opening below `high` with a relative flow coefficient.
+    fn bisect(&self, phi: f64, high: f64) -> f64 {
+        let (mut low, mut high) = (0.0, high);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if self.phi(middle) < phi { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_inverse_table() {
+        // kappa : opening for R = 50 (elizarov2021)
+        let curve = Curve::equal_percentage(2e-3, 50.0);
+        let table = [
+            (0.029575152, 0.1),
+            (0.043734483, 0.2),
+            (0.0646727, 0.3),
+            (0.09563525, 0.4),
+            (0.14142136, 0.5),
+            (0.20912792, 0.6),
+            (0.3092495, 0.7),
+            (0.45730504, 0.8),
+            (0.67624336, 0.9),
+            (1.0, 1.0),
+        ];
+        for (kappa, opening) in table {
+            assert!((curve.opening(kappa) - opening).abs() < 1e-6, "{kappa}");
+        }
+        for phi in [0.0025, 0.01, 0.0205, 0.021, 0.5] {
+            assert!((curve.phi(curve.opening(phi)) - phi).abs() < 1e-12, "{phi}");
+        }
+    }
+
+    #[test]
+    fn equal_percentage_is_the_power_of_the_rangeability() {
+        for (leakage, r) in [(0.0, 2.0), (2e-3, 50.0), (1e-3, 100.0)] {
+            let curve = Curve::equal_percentage(leakage, r);
+            let foot_slope = (f64::powf(r, FOOT - 1.0) - leakage) / FOOT;
+            for i in 0..=1000 {
+                let y = f64::from(i) / 1000.0;
+                let expected = if y <= 0.5 * FOOT {
+                    leakage + y * foot_slope
+                } else if y >= 1.5 * FOOT {
+                    r.powf(y - 1.0)
+                } else {
+                    continue;
+                };
+                assert!((curve.phi(y) / expected.max(1e-300) - 1.0).abs() < 1e-12 || y == 0.0);
+            }
+            assert_eq!(curve.phi(0.0), leakage);
+        }
+    }
+}
