@@ -85,6 +85,7 @@ const MORE_SUFFIXES: &[&str] = &["m_s2"];
 /// Public numbers without a unit suffix, and why they need none.
 const WITHOUT_SUFFIX: &[&str] = &[
     // Ratios.
+    "alpha",
     "delta_m",
     "efficiency_hydraulic",
     "efficiency_motor",
@@ -99,6 +100,8 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "initial_speed",
     "speed_max",
     "speed_min",
+    "table_opening",
+    "table_phi",
     "zeta",
     // Exponents and empirical coefficients.
     "exponent",

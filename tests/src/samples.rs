@@ -162,13 +162,31 @@ fn drive() -> impl Strategy<Value = PumpParams> {
 }
 
 fn valve() -> impl Strategy<Value = ValveParams> {
+    let of =
+        |characteristic, leakage| ValveParams { characteristic, leakage, ..ValveParams::default() };
     let curve = prop_oneof![
-        (2.0..100.0, 0.0..0.95).prop_map(|(rangeability, share): (f64, f64)| (
-            ValveCharacteristic::EqualPercentage,
+        (2.0..100.0, 0.0..0.95).prop_map(move |(rangeability, share): (f64, f64)| ValveParams {
             rangeability,
-            share * rangeability.powf(-0.99)
-        )),
-        (0.0..0.5).prop_map(|leakage| (ValveCharacteristic::Linear, 50.0, leakage)),
+            ..of(ValveCharacteristic::EqualPercentage, share * rangeability.powf(-0.99))
+        }),
+        (0.0..0.5).prop_map(move |leakage| of(ValveCharacteristic::Linear, leakage)),
+        (0.0..0.5, 1.0..4.0).prop_map(move |(leakage, alpha)| ValveParams {
+            alpha,
+            ..of(ValveCharacteristic::QuickOpening, leakage)
+        }),
+        (0.0..0.5, rising_to_1(), rising_to_1()).prop_map(move |(leakage, opening, phi)| {
+            let points = opening.len().min(phi.len()) - 1;
+            let column = |mut column: Vec<f64>| {
+                column.truncate(points);
+                column.push(1.0);
+                column
+            };
+            ValveParams {
+                table_opening: column(opening),
+                table_phi: column(phi),
+                ..of(ValveCharacteristic::Table, leakage)
+            }
+        }),
     ];
     let tight = prop::bool::weighted(0.2);
     let nominal = option::of(logarithmic(0.1, 5.0));
@@ -177,9 +195,7 @@ fn valve() -> impl Strategy<Value = ValveParams> {
         let (command, by_kappa, stroke_time_s, nominal, delta_m) = n;
         ValveParams {
             kvs_m3_h,
-            characteristic: curve.0,
-            rangeability: curve.1,
-            leakage: if tight { 0.0 } else { curve.2 },
+            leakage: if tight { 0.0 } else { curve.leakage },
             command: if by_kappa { ValveCommand::Kappa } else { ValveCommand::Opening },
             opening: (!by_kappa).then_some(command),
             kappa: by_kappa.then_some(command),
@@ -187,7 +203,23 @@ fn valve() -> impl Strategy<Value = ValveParams> {
             stroke_time_s,
             m_flow_nominal_kg_s: nominal.map(|share| share * at_a_tenth_of_a_bar_kg_s(kvs_m3_h)),
             delta_m,
+            ..curve
         }
+    })
+}
+
+/// A column that rises strictly from 0 to 1.
+fn rising_to_1() -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(0.01..1.0, 1..6).prop_map(|steps: Vec<f64>| {
+        let whole: f64 = steps.iter().sum();
+        let rising = steps.iter().scan(0.0, |sum, step| {
+            *sum += step / whole;
+            Some(*sum)
+        });
+        let mut column: Vec<f64> = std::iter::once(0.0).chain(rising).collect();
+        column.pop();
+        column.push(1.0);
+        column
     })
 }
 

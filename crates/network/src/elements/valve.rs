@@ -3,12 +3,15 @@
 //! **Equation** `m = k_vs phi(y) sqrt(dp)`; leakage `l = k(0)/k(1)`.
 //! Linear `phi = l + (1 - l) y`. Equal percentage (rangeability R, foot `delta = 0.01`):
 //! `y < delta/2`: `phi = l + y (R^(delta-1) - l)/delta`; `y > 3 delta/2`: `phi = R^(y-1)`; between a
-//! cubic with value and slope of both ends. With `command = "kappa"` the command is the wanted phi.
+//! cubic with value and slope of both ends. Quick opening `phi = l + (1 - l) y^(1/alpha)`, whose slope
+//! at the seat is made finite: `y (y^2 + delta^2)^((1/alpha - 1)/2)` for the power, scaled to 1 at full
+//! stroke. Table `phi = l + (1 - l) f(y)` with a monotone curve f through the points. With
+//! `command = "kappa"` the command is the wanted phi.
 //!
 //! **Assumptions** fully turbulent. **Numerics** the square law is regularised below `delta_m` times
 //! the nominal flow; a closed tight valve is a prescribed flow of zero.
 //!
-//! **Sources** `wetter2014`, `elizarov2021` (Kvs 2.5 m3/h, leakage 2e-3, 35 s).
+//! **Sources** `wetter2014` (characteristics), `elizarov2021` (Kvs 2.5 m3/h, leakage 2e-3, 35 s).
 
 mod curve;
 
@@ -34,6 +37,10 @@ pub enum ValveCharacteristic {
     /// Equal steps multiply the coefficient equally.
     #[default]
     EqualPercentage,
+    /// Most of the coefficient in the first part of the stroke.
+    QuickOpening,
+    /// Points `table_opening`, `table_phi`.
+    Table,
 }
 
 /// What the command signal means.
@@ -59,6 +66,15 @@ pub struct ValveParams {
     /// Ratio of largest to smallest controllable coefficient (equal percentage).
     #[serde(default = "default_rangeability")]
     pub rangeability: f64,
+    /// Root of the opening that the coefficient follows (quick opening).
+    #[serde(default = "default_alpha")]
+    pub alpha: f64,
+    /// Openings of the table, rising from 0 to 1.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub table_opening: Vec<f64>,
+    /// Relative flow coefficients of the table without the leakage, rising from 0 to 1.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub table_phi: Vec<f64>,
     /// Coefficient of the closed valve over that of the open one; 0 is tight.
     #[serde(default = "default_leakage")]
     pub leakage: f64,
@@ -89,6 +105,10 @@ fn default_rangeability() -> f64 {
     50.0
 }
 
+fn default_alpha() -> f64 {
+    2.0
+}
+
 fn default_leakage() -> f64 {
     1e-3
 }
@@ -107,6 +127,9 @@ impl Default for ValveParams {
             kvs_m3_h: 2.5,
             characteristic: ValveCharacteristic::default(),
             rangeability: default_rangeability(),
+            alpha: default_alpha(),
+            table_opening: Vec::new(),
+            table_phi: Vec::new(),
             leakage: default_leakage(),
             command: ValveCommand::default(),
             opening: None,
@@ -137,30 +160,7 @@ impl ValveParams {
     /// Names the field that is out of range.
     pub fn build(&self, medium: &Medium) -> Result<Valve, ElementError> {
         let k_open = flow_coefficient(positive("kvs_m3_h", self.kvs_m3_h)?, medium.density_kg_m3);
-        if self.rangeability < 2.0 || !self.rangeability.is_finite() {
-            return Err(ElementError::OutOfRange {
-                field: "rangeability",
-                value: self.rangeability,
-                requirement: "must be at least 2",
-            });
-        }
-        let largest_leakage = match self.characteristic {
-            ValveCharacteristic::Linear => 1.0,
-            ValveCharacteristic::EqualPercentage => self.rangeability.powf(FOOT - 1.0),
-        };
-        if !(0.0..largest_leakage).contains(&self.leakage) {
-            return Err(ElementError::OutOfRange {
-                field: "leakage",
-                value: self.leakage,
-                requirement: "must not be negative and below the foot of the characteristic",
-            });
-        }
-        let curve = match self.characteristic {
-            ValveCharacteristic::Linear => Curve::linear(self.leakage),
-            ValveCharacteristic::EqualPercentage => {
-                Curve::equal_percentage(self.leakage, self.rangeability)
-            }
-        };
+        let curve = self.curve()?;
         let (command_name, given, other, other_given) = match self.command {
             ValveCommand::Opening => ("opening", self.opening, "kappa", self.kappa),
             ValveCommand::Kappa => ("kappa", self.kappa, "opening", self.opening),
@@ -198,6 +198,42 @@ impl ValveParams {
             m_flow_nominal_kg_s,
             m_turbulent_kg_s: positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s,
         })
+    }
+
+    /// The characteristic with its parameters checked.
+    fn curve(&self) -> Result<Curve, ElementError> {
+        let out_of_range =
+            |field, value, requirement| ElementError::OutOfRange { field, value, requirement };
+        let has_table = !self.table_opening.is_empty() || !self.table_phi.is_empty();
+        if has_table != (self.characteristic == ValveCharacteristic::Table) {
+            return Err(ElementError::Fields {
+                problem: "table_opening and table_phi belong to characteristic = \"table\"".into(),
+            });
+        }
+        if self.rangeability < 2.0 || !self.rangeability.is_finite() {
+            return Err(out_of_range("rangeability", self.rangeability, "must be at least 2"));
+        }
+        if self.alpha < 1.0 || !self.alpha.is_finite() {
+            return Err(out_of_range("alpha", self.alpha, "must be at least 1"));
+        }
+        let largest_leakage = match self.characteristic {
+            ValveCharacteristic::EqualPercentage => self.rangeability.powf(FOOT - 1.0),
+            _ => 1.0,
+        };
+        if !(0.0..largest_leakage).contains(&self.leakage) {
+            let requirement = "must not be negative and below the foot of the characteristic";
+            return Err(out_of_range("leakage", self.leakage, requirement));
+        }
+        match self.characteristic {
+            ValveCharacteristic::Linear => Ok(Curve::linear(self.leakage)),
+            ValveCharacteristic::EqualPercentage => {
+                Ok(Curve::equal_percentage(self.leakage, self.rangeability))
+            }
+            ValveCharacteristic::QuickOpening => Ok(Curve::quick_opening(self.leakage, self.alpha)),
+            ValveCharacteristic::Table => {
+                Curve::table(self.leakage, &self.table_opening, &self.table_phi)
+            }
+        }
     }
 }
 
@@ -255,8 +291,17 @@ mod tests {
 
     #[test]
     fn characteristic_rises_and_a_tight_valve_closes() {
-        for characteristic in [ValveCharacteristic::Linear, ValveCharacteristic::EqualPercentage] {
-            let params = ValveParams { characteristic, leakage: 0.0, ..ValveParams::default() };
+        for characteristic in [
+            ValveCharacteristic::Linear,
+            ValveCharacteristic::EqualPercentage,
+            ValveCharacteristic::QuickOpening,
+            ValveCharacteristic::Table,
+        ] {
+            let mut params = ValveParams { characteristic, leakage: 0.0, ..ValveParams::default() };
+            if characteristic == ValveCharacteristic::Table {
+                params.table_opening = vec![0.0, 0.3, 1.0];
+                params.table_phi = vec![0.0, 0.9, 1.0];
+            }
             let valve = params.build(&Medium::default()).unwrap();
             let mut last = -1.0;
             for i in 0..=1000 {
@@ -270,5 +315,26 @@ mod tests {
                 Characteristic::ImposedFlow { m_flow_kg_s: 0.0 }
             );
         }
+    }
+
+    #[test]
+    fn a_table_must_rise_from_0_to_1() {
+        let error = |opening: &[f64], phi: &[f64]| {
+            let params = ValveParams {
+                characteristic: ValveCharacteristic::Table,
+                table_opening: opening.to_vec(),
+                table_phi: phi.to_vec(),
+                ..ValveParams::default()
+            };
+            params.build(&Medium::default()).unwrap_err().to_string()
+        };
+        assert_eq!(
+            error(&[0.0, 0.5, 1.0], &[0.0, 0.0, 1.0]),
+            "table_phi: the coefficient must rise strictly with the opening: point 2 has 0, the \
+             point before 0"
+        );
+        assert!(error(&[0.0, 0.9], &[0.0, 1.0]).contains("table_opening: must begin with 0"));
+        assert!(error(&[0.0, 1.0], &[0.1, 1.0]).contains("table_phi: must begin with 0"));
+        assert!(error(&[], &[]).contains("belong to"));
     }
 }

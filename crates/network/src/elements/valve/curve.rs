@@ -3,10 +3,14 @@
 //! What does not depend on the stroke is computed once: the solver asks for the coefficient in every
 //! iteration of every step.
 
-use anergy_core::numerics::interpolate::cubic_hermite;
+use crate::two_port::ElementError;
+use anergy_core::numerics::interpolate::{Pchip, cubic_hermite};
 
-/// Width of the linear foot of the equal-percentage characteristic.
+/// Width of the linear foot of the equal-percentage characteristic, and of the region in which the
+/// quick-opening one leaves its power law.
 pub(super) const FOOT: f64 = 0.01;
+/// Slope of a table at its ends, at least, as a share of the first and last secant.
+const END_SLOPE_SHARE: f64 = 0.1;
 /// Halvings of an interval of the stroke until neighbouring numbers are left.
 const BISECTIONS: u32 = 60;
 
@@ -21,6 +25,8 @@ pub(super) struct Curve {
 enum Shape {
     Linear,
     EqualPercentage(EqualPercentage),
+    QuickOpening { exponent: f64, scale: f64 },
+    Table(Pchip),
 }
 
 /// `phi = R^(y - 1)` above a linear foot.
@@ -54,6 +60,44 @@ impl Curve {
         Self { leakage, shape }
     }
 
+    /// `phi = l + (1 - l) y^(1/alpha)` with a finite slope at the seat.
+    pub(super) fn quick_opening(leakage: f64, alpha: f64) -> Self {
+        let exponent = 0.5 * (1.0 / alpha - 1.0);
+        let scale = (1.0 + FOOT * FOOT).powf(-exponent);
+        Self { leakage, shape: Shape::QuickOpening { exponent, scale } }
+    }
+
+    /// `phi = l + (1 - l) f(y)` with f through points.
+    ///
+    /// # Errors
+    /// Names the column and the point that is wrong.
+    pub(super) fn table(leakage: f64, opening: &[f64], phi: &[f64]) -> Result<Self, ElementError> {
+        let wrong = |field, problem| Err(ElementError::Table { field, problem });
+        let points = match Pchip::new(opening, phi) {
+            Ok(points) => points.with_end_slopes(END_SLOPE_SHARE),
+            Err(error) => return wrong("table_opening", error.to_string()),
+        };
+        for (field, column) in [("table_opening", opening), ("table_phi", phi)] {
+            let (first, last) = (column[0], column[column.len() - 1]);
+            if first != 0.0 || last != 1.0 {
+                let problem =
+                    format!("must begin with 0 and end with 1, not with {first} and {last}");
+                return wrong(field, problem);
+            }
+        }
+        if let Some(i) = (1..phi.len()).find(|&i| phi[i] <= phi[i - 1]) {
+            let problem = format!(
+                "the coefficient must rise strictly with the opening: point {} has {}, the point \
+                 before {}",
+                i + 1,
+                phi[i],
+                phi[i - 1]
+            );
+            return wrong("table_phi", problem);
+        }
+        Ok(Self { leakage, shape: Shape::Table(points) })
+    }
+
     /// Relative flow coefficient at an opening.
     pub(super) fn phi(&self, y: f64) -> f64 {
         let l = self.leakage;
@@ -68,6 +112,10 @@ impl Curve {
                     cubic_hermite(y, curve.blend_from, curve.blend_to).value
                 }
             }
+            Shape::QuickOpening { exponent, scale } => {
+                l + (1.0 - l) * scale * y * (y * y + FOOT * FOOT).powf(*exponent)
+            }
+            Shape::Table(points) => l + (1.0 - l) * points.at(y).value,
         }
     }
 
@@ -77,12 +125,16 @@ impl Curve {
         if phi <= l {
             return 0.0;
         }
+        if phi >= 1.0 {
+            return 1.0;
+        }
         match &self.shape {
             Shape::Linear => ((phi - l) / (1.0 - l)).min(1.0),
             Shape::EqualPercentage(curve) => {
                 let y = 1.0 + phi.ln() / curve.ln_rangeability;
                 if y >= curve.blend_to.0 { y.min(1.0) } else { self.bisect(phi, curve.blend_to.0) }
             }
+            Shape::QuickOpening { .. } | Shape::Table(_) => self.bisect(phi, 1.0),
         }
     }
 
@@ -142,6 +194,23 @@ mod tests {
                 assert!((curve.phi(y) / expected.max(1e-300) - 1.0).abs() < 1e-12 || y == 0.0);
             }
             assert_eq!(curve.phi(0.0), leakage);
+        }
+    }
+
+    #[test]
+    fn quick_opening_and_table_have_their_inverse() {
+        // sqrt(0.25) = 0.5: phi = 0.05 + 0.95 * 0.5 = 0.525. The foot lowers the root by
+        // (1 + (0.01/0.25)^2)^(-1/4) = 0.9996 and the scale raises it by 1.000025: 0.52482.
+        let quick = Curve::quick_opening(0.05, 2.0);
+        assert!((quick.phi(0.25) - 0.52482).abs() < 1e-5, "{}", quick.phi(0.25));
+        let table = Curve::table(0.0, &[0.0, 0.2, 0.6, 1.0], &[0.0, 0.05, 0.7, 1.0]).unwrap();
+        assert!((table.phi(0.6) - 0.7).abs() < 1e-15);
+        for curve in [quick, table, Curve::quick_opening(1e-4, 3.5)] {
+            for phi in [0.051, 0.06, 0.2, 0.525, 0.7, 0.999] {
+                assert!((curve.phi(curve.opening(phi)) - phi).abs() < 1e-12, "{phi}");
+            }
+            assert_eq!((curve.opening(0.0), curve.opening(1.0)), (0.0, 1.0));
+            assert!((curve.phi(1.0) - 1.0).abs() < 1e-15);
         }
     }
 }
