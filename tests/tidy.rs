@@ -103,8 +103,10 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "table_opening",
     "table_phi",
     "zeta",
-    // Exponents and empirical coefficients.
+    // Exponents, empirical coefficients and those of mixed units.
     "exponent",
+    "curve_exponent",
+    "curve_polynomial",
     "flow_exponent",
     "coefficient",
     "hazen_williams_c",

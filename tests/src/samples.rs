@@ -46,7 +46,9 @@ pub fn nature(params: &ElementParams) -> Nature {
 pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
     match kind {
         "pipe" => pipe().prop_map(ElementParams::Pipe).boxed(),
-        "pump" => prop_oneof![quadratic_pump(), table_pump()].prop_map(ElementParams::Pump).boxed(),
+        "pump" => prop_oneof![formula_pump(), table_pump(), polynomial_pump()]
+            .prop_map(ElementParams::Pump)
+            .boxed(),
         "valve" => valve().prop_map(ElementParams::Valve).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
@@ -107,10 +109,35 @@ fn pipe() -> impl Strategy<Value = PipeParams> {
     )
 }
 
-fn quadratic_pump() -> impl Strategy<Value = PumpParams> {
-    (logarithmic(1e3, 2e6), logarithmic(1e-5, 0.3), drive()).prop_map(|(head, flow, drive)| {
-        PumpParams { head_max_pa: Some(head), free_flow_m3_s: Some(flow), ..drive }
-    })
+/// A quadratic curve or a power law.
+fn formula_pump() -> impl Strategy<Value = PumpParams> {
+    let exponent = option::of(prop_oneof![0.5..3.0, 0.1..20.0]);
+    (logarithmic(1e3, 2e6), logarithmic(1e-5, 0.3), exponent, drive()).prop_map(
+        |(head, flow, curve_exponent, drive)| PumpParams {
+            head_max_pa: Some(head),
+            free_flow_m3_s: Some(flow),
+            curve_exponent,
+            ..drive
+        },
+    )
+}
+
+/// A fitted polynomial: `1 + c1 x - c2 x^2 - c3 x^3` over the relative flow, which may rise a little at
+/// low flow, with or without its end.
+fn polynomial_pump() -> impl Strategy<Value = PumpParams> {
+    let shape = (-0.5..0.15, 0.2..1.0, 0.0..1.0, option::of(0.3..1.2));
+    (logarithmic(1e3, 2e6), logarithmic(1e-5, 0.3), shape, drive()).prop_map(
+        |(head, flow, (c1, c2, c3, end), drive): (f64, f64, (f64, f64, f64, Option<f64>), _)| {
+            let powers = [1.0, c1, -c2, -c3].into_iter().zip(0..);
+            PumpParams {
+                head_max_pa: None,
+                free_flow_m3_s: None,
+                curve_polynomial: powers.map(|(c, i)| c * head / flow.powi(i)).collect(),
+                curve_v_flow_max_m3_s: end.map(|end: f64| end * flow),
+                ..drive
+            }
+        },
+    )
 }
 
 /// A curve of a catalogue: steeper with the flow, but with points read off by eye.
@@ -134,6 +161,10 @@ fn table_pump() -> impl Strategy<Value = PumpParams> {
             (v_sum, head_sum) = (v_sum + v_step, head_sum + head_step);
             v_flow.push(flow_max * v_sum / whole.0);
             head.push(head_max * (1.0 - (1.0 - head_at_end) * head_sum / whole.1));
+        }
+        // Now and then it rises at low flow.
+        if head_at_end > 0.7 {
+            head[0] *= 0.95;
         }
         PumpParams {
             head_max_pa: None,

@@ -124,6 +124,12 @@ pub trait TwoPort {
         None
     }
 
+    /// What the author of the model should know of this element, for example how its curve had to be
+    /// changed.
+    fn note(&self) -> Option<&str> {
+        None
+    }
+
     /// Length along the route, m; zero for what is not a pipe.
     fn length_m(&self) -> f64 {
         0.0

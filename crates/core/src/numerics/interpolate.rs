@@ -114,6 +114,20 @@ impl Pchip {
         )
     }
 
+    /// Replaces the slopes at all points, for data that come from a smooth curve. Each is bounded so that
+    /// the curve stays strictly monotone where the data are: between a share of the smaller and three
+    /// times the smaller of the neighbouring secants.
+    pub fn with_slopes(mut self, slopes: &[f64], least_share: f64) -> Self {
+        let last = self.x.len() - 1;
+        for (i, wanted) in slopes.iter().enumerate().take(last + 1) {
+            let (left, right) = (self.secant(i.saturating_sub(1)), self.secant(i.min(last - 1)));
+            let smaller = if left.abs() < right.abs() { left } else { right };
+            let share = if smaller == 0.0 { 0.0 } else { wanted / smaller };
+            self.slope[i] = smaller * share.clamp(least_share, 3.0);
+        }
+        self
+    }
+
     /// Replaces the slope at the first point (for a prescribed continuation below the data).
     pub fn with_first_slope(mut self, slope: f64) -> Self {
         self.slope[0] = slope;
@@ -214,5 +228,19 @@ mod tests {
         assert!(Pchip::new(&[0.0], &[1.0]).is_err());
         assert!(Pchip::new(&[0.0, f64::NAN], &[1.0, 1.0]).is_err());
         assert!(Pchip::new(&[0.0, 1.0], &[1.0]).is_err());
+    }
+
+    #[test]
+    fn given_slopes_reproduce_a_cubic() {
+        // y = -x^3 - x with y' = -3 x^2 - 1
+        let x = [0.0, 0.5, 1.0, 2.0];
+        let curve = Pchip::new(&x, &x.map(|x| -x * x * x - x)).unwrap();
+        let curve = curve.with_slopes(&x.map(|x| -3.0 * x * x - 1.0), 0.01);
+        for x in [0.1, 0.7, 1.5, 2.0] {
+            assert!((curve.at(x).value + x * x * x + x).abs() < 1e-14, "{x}");
+        }
+        // A slope of the wrong sign becomes the least share of the secant, -1.25.
+        let bounded = curve.with_slopes(&[5.0, -1.75, -4.0, -13.0], 0.01);
+        assert!((bounded.at(0.0).slope + 0.0125).abs() < 1e-14);
     }
 }

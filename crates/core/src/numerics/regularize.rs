@@ -50,6 +50,47 @@ pub fn smoothstep(x: f64) -> f64 {
     x * x * (3.0 - 2.0 * x)
 }
 
+/// Odd power law `c m |m|^(n-1)` with n > 0, C1 and with a positive, finite slope at zero: inside the
+/// threshold, with `x = |m|/m_t`, `c m_t^n x (1 - b + b x^(2 max(1, n - 1)))`, `b = min(n - 1, 1)/2`.
+#[inline]
+pub fn power(m: f64, coefficient: f64, exponent: f64, m_turbulent: f64) -> Linear {
+    let n = exponent;
+    let x = m.abs() / m_turbulent;
+    let (value, slope) = if x >= 1.0 {
+        let below = x.powf(n - 1.0);
+        (x * below, n * below)
+    } else {
+        let (b, k) = (0.5 * (n - 1.0).min(1.0), 2.0 * (n - 1.0).max(1.0));
+        let bent = b * x.powf(k);
+        (x * (1.0 - b + bent), 1.0 - b + (1.0 + k) * bent)
+    };
+    let scale = coefficient * m_turbulent.powf(n);
+    Linear::new((scale * value).copysign(m), scale / m_turbulent * slope)
+}
+
+/// The larger of two laws, C1 where they cross: `max(a, b) + e^2/(2 (|a - b| + s))` with
+/// `s = sqrt((a - b)^2 + e^2)`, which is `(a + b + s)/2` without its cancellation. It lies above the
+/// larger one by `e/2` at the crossing and by less than `e^2/(4 |a - b|)` beside it; its slope is a
+/// weighted mean of the two slopes.
+#[inline]
+pub fn smooth_max(a: Linear, b: Linear, rounding: f64) -> Linear {
+    let (above, below) = if a.value >= b.value { (a, b) } else { (b, a) };
+    let difference = above.value - below.value;
+    let root = difference.hypot(rounding);
+    if root == 0.0 {
+        return Linear::new(above.value, 0.5 * (above.slope + below.slope));
+    }
+    let excess = 0.5 * rounding * (rounding / (difference + root));
+    let weight = excess / root;
+    Linear::new(above.value + excess, above.slope * (1.0 - weight) + below.slope * weight)
+}
+
+/// The smaller of two laws, C1 where they cross: `-smooth_max(-a, -b)`.
+#[inline]
+pub fn smooth_min(a: Linear, b: Linear, rounding: f64) -> Linear {
+    smooth_max(a.scaled(-1.0), b.scaled(-1.0), rounding).scaled(-1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,5 +118,40 @@ mod tests {
         for m in [-1.0, -0.3, -0.1, 0.0, 0.05, 0.299, 0.5] {
             check_slope(|m| quadratic(m, c, m_t), m, 1e-5).unwrap();
         }
+    }
+
+    #[test]
+    fn power_laws_join_their_foot() {
+        // n = 1.5 at x = 2: 2^1.5 = 2.8284; n = 1 is linear; n = 3 at x = 0.5, b = 0.5, k = 4:
+        // 0.5 (0.5 + 0.5 * 0.0625) = 0.265625
+        assert!((power(0.2, 1.0, 1.5, 0.1).value - 0.2_f64.powf(1.5)).abs() < 1e-15);
+        assert!((power(0.03, 2.0, 1.0, 0.1).value - 0.06).abs() < 1e-15);
+        assert!((power(0.05, 1.0, 3.0, 0.1).value - 1e-3 * 0.265_625).abs() < 1e-15);
+        for n in [0.3, 0.9, 1.0, 1.5, 2.0, 2.7, 5.0, 20.0] {
+            for m in [-1.0, -0.1, -0.03, 1e-4, 0.05, 0.0999, 0.5] {
+                check_slope(|m| power(m, 2.0, n, 0.1), m, 1e-5).unwrap();
+            }
+            let (inside, outside) = (power(0.1 - 1e-12, 2.0, n, 0.1), power(0.1, 2.0, n, 0.1));
+            assert!((inside.slope / outside.slope - 1.0).abs() < 1e-8, "{n}");
+            assert!(power(0.0, 2.0, n, 0.1).slope > 0.0);
+            assert_eq!(power(-0.02, 2.0, n, 0.1).value, -power(0.02, 2.0, n, 0.1).value);
+        }
+    }
+
+    #[test]
+    fn the_larger_of_two_laws_is_rounded_at_the_crossing_only() {
+        // Lines x and 3x cross at 0: there e/2 above; at x = 1 the difference is 2:
+        // 3 + 0.01/(2 (2 + sqrt(4.01))) = 3 + 0.01/8.004998 = 3.00124922
+        let of = |x: f64| smooth_max(Linear::new(x, 1.0), Linear::new(3.0 * x, 3.0), 0.1);
+        assert!((of(0.0).value - 0.05).abs() < 1e-15);
+        assert!((of(0.0).slope - 2.0).abs() < 1e-15);
+        assert!((of(1.0).value - 3.001_249_22).abs() < 1e-8);
+        let least = |x: f64| smooth_min(Linear::new(x, 1.0), Linear::new(3.0 * x, 3.0), 0.1);
+        assert!((least(1.0).value - (1.0 - 0.001_249_22)).abs() < 1e-8);
+        for x in [-1.0, -0.02, 0.01, 0.3] {
+            check_slope(of, x, 1e-6).unwrap();
+            check_slope(least, x, 1e-6).unwrap();
+        }
+        assert_eq!(smooth_max(Linear::new(1.0, 2.0), Linear::new(1.0, 4.0), 0.0).slope, 3.0);
     }
 }

@@ -1,51 +1,58 @@
 //! A speed-controlled circulation pump: affinity laws on a head curve, actuator lag, electric power.
 //!
-//! **Equation** at relative speed u and `V = m/rho`: `p_b - p_a = u^2 H(V/u)`; quadratic curve
-//! `H = H0 - a V|V|` with `a = H0/V_free^2`, so `p_a - p_b = -u^2 H0 + a V|V|`; or a table of points
-//! with monotone interpolation, continued linearly beyond its end and by `H0 + s|V| + a V^2` for
-//! reverse flow. Power `P = V dp/(eta_h eta_m)` for pumping flow, plus standby.
+//! **Equation** at relative speed u and `V = m/rho`: `p_b - p_a = u^2 H(V/u)`. The curve H at full speed
+//! is one of: quadratic `H = H0 - a V|V|` with `a = H0/V_free^2`, so `p_a - p_b = -u^2 H0 + a V|V|`;
+//! power law `H = H0 - H0 (V/V_free)^n`, odd in the flow, straight beyond `+-V_free`; a table of points
+//! with monotone interpolation; or a polynomial `H = sum c_i V^i` up to its first zero. The last two are
+//! continued linearly beyond their end and by `H0 + s|V| + a V^2` for reverse flow. Power
+//! `P = V dp/(eta_h eta_m)` for pumping flow, plus standby.
 //!
-//! **Assumptions** at rest the impeller is an orifice of the curve's curvature. **Validity** any flow:
-//! reverse flow is resisted, flow beyond the curve makes the pump a resistance.
+//! **Assumptions** at rest the impeller is an orifice of the curve's curvature. Where a table or
+//! polynomial does not fall, the nearest falling curve is taken and said so, up to 10 % of H0.
+//! **Validity** any flow: reverse flow is resisted, flow beyond the curve makes the pump a resistance.
 //!
-//! **Numerics** `V|V|` is regularised below `delta_m` times the nominal flow; table curves are blended
-//! into the orifice below 5 % speed. Below `speed_min` the pump is off.
+//! **Numerics** `V|V|` and `V^n` are regularised below `delta_m` times the nominal flow, high powers up
+//! to where they have the slope of the quadratic law at zero; all but the quadratic curve are blended into the orifice below 5 % speed. Below `speed_min` the pump is off.
+//! Polynomials are sampled with their slopes, which is exact up to the third power.
 //!
 //! **Sources** `licklederer2021`, `wetter2014`, `elizarov2021` (rise time).
+
+mod curve;
 
 use crate::two_port::{
     Actuator, Characteristic, EdgeState, ElementError, TwoPort, not_negative, positive, ratio,
 };
-use anergy_core::linear::Linear;
 use anergy_core::medium::Medium;
-use anergy_core::numerics::interpolate::Pchip;
-use anergy_core::numerics::regularize::{quadratic, quadratic_slope_at_zero, smoothstep};
+use curve::HeadCurve;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Below this speed a table curve is blended into the impeller at rest.
-const BLEND_SPEED: f64 = 0.05;
-
-/// Slope of a table at its ends, at least, as a share of the first and last secant.
-const END_SLOPE_SHARE: f64 = 0.1;
-
-/// A pump as written in a model file: either `head_max_pa` and `free_flow_m3_s`, or the two columns
-/// `curve_v_flow_m3_s` and `curve_head_pa`.
+/// A pump as written in a model file: `head_max_pa` and `free_flow_m3_s`, or the two columns
+/// `curve_v_flow_m3_s` and `curve_head_pa`, or `curve_polynomial`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PumpParams {
-    /// Head at zero flow and full speed, Pa (quadratic curve).
+    /// Head at zero flow and full speed, Pa (quadratic curve or power law).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_max_pa: Option<f64>,
-    /// Flow at zero head and full speed, m3/s (quadratic curve).
+    /// Flow at zero head and full speed, m3/s (quadratic curve or power law).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_flow_m3_s: Option<f64>,
+    /// Exponent of the flow between the two. Absent: 2, the quadratic curve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_exponent: Option<f64>,
     /// Flows of the curve table at full speed, m3/s, rising from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_v_flow_m3_s: Vec<f64>,
     /// Heads of the curve table, Pa, falling.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_head_pa: Vec<f64>,
+    /// Head at full speed as a polynomial of the flow, Pa over m3/s: coefficients of increasing powers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve_polynomial: Vec<f64>,
+    /// Largest flow of the polynomial, m3/s. Absent: where its head becomes zero.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_v_flow_max_m3_s: Option<f64>,
     /// Relative speed commanded while nothing else drives it.
     #[serde(default)]
     pub speed: f64,
@@ -97,8 +104,11 @@ impl Default for PumpParams {
         Self {
             head_max_pa: Some(40_221.0),
             free_flow_m3_s: Some(55.33 / 60_000.0),
+            curve_exponent: None,
             curve_v_flow_m3_s: Vec::new(),
             curve_head_pa: Vec::new(),
+            curve_polynomial: Vec::new(),
+            curve_v_flow_max_m3_s: None,
             speed: 0.0,
             initial_speed: 0.0,
             speed_min: 0.0,
@@ -112,55 +122,24 @@ impl Default for PumpParams {
     }
 }
 
-/// A table curve with its continuation.
-#[derive(Debug, Clone, PartialEq)]
-struct TableCurve {
-    points: Pchip,
-    slope_at_zero: f64,
-}
-
 /// A pump ready to be solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pump {
-    head_max_pa: f64,
-    /// Curvature over the mass flow, Pa/(kg/s)^2.
-    curvature: f64,
-    m_turbulent_kg_s: f64,
-    m_flow_nominal_kg_s: f64,
-    table: Option<TableCurve>,
+    curve: HeadCurve,
     efficiency: f64,
     standby_w: f64,
     actuator: Actuator,
     speed_min: f64,
+    speed_max: f64,
 }
 
 impl PumpParams {
     /// The runtime pump.
     ///
     /// # Errors
-    /// Names the field that is out of range, or the point at which the curve does not fall.
+    /// Names the field that is out of range, or the point at which the curve rises too far.
     pub fn build(&self, medium: &Medium) -> Result<Pump, ElementError> {
-        let rho = medium.density_kg_m3;
-        let has_table = !self.curve_v_flow_m3_s.is_empty() || !self.curve_head_pa.is_empty();
-        let (head_max_pa, free_flow, curve) = match (self.head_max_pa, self.free_flow_m3_s) {
-            (Some(head), Some(flow)) if !has_table => {
-                (positive("head_max_pa", head)?, positive("free_flow_m3_s", flow)?, None)
-            }
-            (None, None) if has_table => {
-                let curve = checked_curve(&self.curve_v_flow_m3_s, &self.curve_head_pa)?;
-                let (first, last) = (self.curve_head_pa[0], curve.range().1);
-                // Quadratic through the ends of the table: curvature and reverse flow.
-                let end_head = curve.at(last).value;
-                (first, last * (first / (first - end_head)).sqrt(), Some(curve))
-            }
-            _ => {
-                return Err(ElementError::Fields {
-                    problem: "give either head_max_pa and free_flow_m3_s, or the table \
-                              curve_v_flow_m3_s and curve_head_pa"
-                        .into(),
-                });
-            }
-        };
+        let curve = self.head_curve(medium.density_kg_m3)?;
         let speed_max = positive("speed_max", self.speed_max)?;
         for (field, value) in [
             ("speed", self.speed),
@@ -180,24 +159,8 @@ impl PumpParams {
                 "efficiency_hydraulic",
                 ratio("efficiency_hydraulic", self.efficiency_hydraulic)?,
             )? * positive("efficiency_motor", ratio("efficiency_motor", self.efficiency_motor)?)?;
-        let m_free = free_flow * rho;
-        let m_flow_nominal_kg_s = 0.5 * m_free;
-        let curvature = head_max_pa / (m_free * m_free);
-        let m_turbulent_kg_s = positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s;
-        let table = curve.map(|curve| {
-            // The slope at zero is that of the regularised quadratic where the table is flatter, as
-            // far as the curve stays monotone (three times the first secant).
-            let floor = quadratic_slope_at_zero(curvature, m_turbulent_kg_s) * rho;
-            let floor = floor.min(-2.0 * curve.secant(0));
-            let slope_at_zero = curve.at(0.0).slope.min(-floor);
-            TableCurve { points: curve.with_first_slope(slope_at_zero), slope_at_zero }
-        });
         Ok(Pump {
-            head_max_pa,
-            curvature,
-            m_turbulent_kg_s,
-            m_flow_nominal_kg_s,
-            table,
+            curve,
             efficiency,
             standby_w: not_negative("standby_w", self.standby_w)?,
             actuator: Actuator {
@@ -211,79 +174,26 @@ impl PumpParams {
                 max: speed_max,
             },
             speed_min: self.speed_min,
+            speed_max,
         })
     }
 }
 
-/// The table as a curve that starts at zero flow and falls strictly.
-fn checked_curve(v_flow: &[f64], head: &[f64]) -> Result<Pchip, ElementError> {
-    let curve = Pchip::new(v_flow, head)
-        .map_err(|error| ElementError::Table {
-            field: "curve_v_flow_m3_s",
-            problem: error.to_string(),
-        })?
-        .with_end_slopes(END_SLOPE_SHARE);
-    if v_flow[0] != 0.0 {
-        return Err(ElementError::Table {
-            field: "curve_v_flow_m3_s",
-            problem: format!("the curve must start at zero flow, not at {}", v_flow[0]),
-        });
-    }
-    if head[0] <= 0.0 {
-        return Err(ElementError::Table {
-            field: "curve_head_pa",
-            problem: format!("the head at zero flow must be positive, not {}", head[0]),
-        });
-    }
-    if let Some(i) = (1..head.len()).find(|&i| head[i] >= head[i - 1]) {
-        return Err(ElementError::Table {
-            field: "curve_head_pa",
-            problem: format!(
-                "the head must fall strictly with the flow: point {} has {} Pa, the point before {} Pa",
-                i + 1,
-                head[i],
-                head[i - 1]
-            ),
-        });
-    }
-    Ok(curve)
-}
-
 impl Pump {
-    fn head_loss(&self, m: f64, speed: f64, density: f64) -> Linear {
-        let at_rest = quadratic(m, self.curvature, self.m_turbulent_kg_s);
-        let Some(table) = &self.table else {
-            return Linear::new(at_rest.value - speed * speed * self.head_max_pa, at_rest.slope);
-        };
-        let weight = smoothstep(speed / BLEND_SPEED);
-        let reference_speed = speed.max(BLEND_SPEED);
-        let v = m / density / reference_speed;
-        let head = if v >= 0.0 {
-            table.points.at(v)
-        } else {
-            let curvature = self.curvature * density * density;
-            Linear::new(
-                self.head_max_pa + table.slope_at_zero * v + curvature * v * v,
-                table.slope_at_zero + 2.0 * curvature * v,
-            )
-        };
-        let square = speed * speed;
-        Linear::new(
-            -weight * square * head.value
-                + (1.0 - weight) * (at_rest.value - square * self.head_max_pa),
-            -weight * square * head.slope / (density * reference_speed)
-                + (1.0 - weight) * at_rest.slope,
-        )
+    /// The relative speed at which the pump has `p_a - p_b = dp_pa` at a flow: the nearest one within
+    /// its limits.
+    pub fn speed_at(&self, m_flow_kg_s: f64, dp_pa: f64, density_kg_m3: f64) -> f64 {
+        self.curve.speed_at(m_flow_kg_s, dp_pa, density_kg_m3, self.speed_max)
     }
 }
 
 impl TwoPort for Pump {
     fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
-        Characteristic::PressureLoss(self.head_loss(m, state.position, state.density_kg_m3))
+        Characteristic::PressureLoss(self.curve.loss(m, state.position, state.density_kg_m3))
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {
-        self.m_flow_nominal_kg_s
+        0.5 * self.curve.m_free_kg_s
     }
 
     fn actuator(&self) -> Option<Actuator> {
@@ -295,8 +205,12 @@ impl TwoPort for Pump {
         if speed < self.speed_min { 0.0 } else { speed }
     }
 
+    fn note(&self) -> Option<&str> {
+        self.curve.note.as_deref()
+    }
+
     fn electric_power_w(&self, m: f64, state: &EdgeState) -> Option<f64> {
-        let head = -self.head_loss(m, state.position, state.density_kg_m3).value;
+        let head = -self.curve.loss(m, state.position, state.density_kg_m3).value;
         let hydraulic = m / state.density_kg_m3 * head;
         let pumping = state.position > 0.0 && m > 0.0 && head > 0.0;
         Some(self.standby_w + if pumping { hydraulic / self.efficiency } else { 0.0 })
@@ -312,7 +226,7 @@ mod tests {
     }
 
     fn head(pump: &Pump, m: f64, speed: f64) -> f64 {
-        -pump.head_loss(m, speed, 1000.0).value
+        -pump.curve.loss(m, speed, 1000.0).value
     }
 
     #[test]
@@ -360,21 +274,120 @@ mod tests {
             .build(&Medium::default())
             .unwrap();
             let flows: Vec<f64> = (-300..=500).map(|i| f64::from(i) * 1e-3).collect();
-            let law = |m| pump.head_loss(m, 1.0, 1000.0);
+            let law = |m| pump.curve.loss(m, 1.0, 1000.0);
             anergy_core::testing::check_monotone(law, &flows).unwrap();
         }
     }
 
-    #[test]
-    fn a_rising_curve_is_refused_with_its_point() {
+    /// A pump with a table at 0, 0.1 and 0.2 l/s.
+    fn of_table(heads: [f64; 3]) -> Result<Pump, ElementError> {
         let params = PumpParams {
             head_max_pa: None,
             free_flow_m3_s: None,
             curve_v_flow_m3_s: vec![0.0, 1e-4, 2e-4],
-            curve_head_pa: vec![100.0, 110.0, 50.0],
+            curve_head_pa: heads.to_vec(),
             ..PumpParams::default()
         };
-        let error = params.build(&Medium::default()).unwrap_err().to_string();
-        assert!(error.contains("point 2 has 110 Pa"), "{error}");
+        params.build(&Medium::default())
+    }
+
+    #[test]
+    fn a_curve_that_rises_a_little_is_repaired_and_says_so() {
+        // The nearest falling heads to 100, 104: their mean 102 twice, but tilted by 0.1 % of 100 Pa
+        // over 0.2 l/s, 0.05 Pa per point: 102.025 and 101.975. Farthest: 104 - 101.975 = 2.025 Pa.
+        let pump = of_table([100.0, 104.0, 50.0]).unwrap();
+        assert!((head(&pump, 0.0, 1.0) - 102.025).abs() < 1e-9);
+        assert!((head(&pump, 0.1, 1.0) - 101.975).abs() < 1e-9);
+        assert!((head(&pump, 0.2, 1.0) - 50.0).abs() < 1e-9);
+        let note = pump.note().unwrap();
+        assert!(note.contains("104 Pa at 1.0000e-4 m3/s follow 100 Pa"), "{note}");
+        assert!(note.contains("at most 2 Pa (2.03 % of"), "{note}");
+        assert_eq!(of_table([100.0, 90.0, 50.0]).unwrap().note(), None);
+        // 100 and 130 become 115: 15 % are too much.
+        let error = of_table([100.0, 130.0, 50.0]).unwrap_err().to_string();
+        assert!(error.starts_with("curve_head_pa") && error.contains("15 Pa away"), "{error}");
+    }
+
+    fn of_polynomial(coefficients: &[f64], end: Option<f64>) -> Result<Pump, ElementError> {
+        let params = PumpParams {
+            head_max_pa: None,
+            free_flow_m3_s: None,
+            curve_polynomial: coefficients.to_vec(),
+            curve_v_flow_max_m3_s: end,
+            ..PumpParams::default()
+        };
+        params.build(&Medium::default())
+    }
+
+    #[test]
+    fn polynomials_end_where_their_head_does() {
+        // H = 4e4 (1 - x - x^2 + x^3) with x = V/1 l/s: (1 - x)^2 (1 + x), zero at x = 1 only, twice;
+        // with a linear term of -1.2 the zero is a simple one below 1.
+        let scaled = |c: [f64; 4]| {
+            let powers = c.iter().enumerate().map(|(i, c)| 4e4 * c * 1e3_f64.powi(i as i32));
+            powers.collect::<Vec<f64>>()
+        };
+        let pump = of_polynomial(&scaled([1.0, -1.2, -1.0, 1.0]), None).unwrap();
+        // x = 0.5: 1 - 0.6 - 0.25 + 0.125 = 0.275
+        assert!((head(&pump, 0.5, 1.0) - 11_000.0).abs() < 1e-6);
+        // Half speed, same x at 0.25 l/s: a quarter.
+        assert!((head(&pump, 0.25, 0.5) - 2_750.0).abs() < 1e-6);
+        let m_free = pump.curve.m_free_kg_s;
+        let x = m_free;
+        assert!((1.0 - 1.2 * x - x * x + x * x * x).abs() < 1e-12, "{x}");
+        // No zero: the end must be given, and the curve goes on straight behind it.
+        let open = scaled([1.0, -1.0, 0.5, 0.0]);
+        let error = of_polynomial(&open, None).unwrap_err().to_string();
+        assert!(error.contains("curve_v_flow_max_m3_s"), "{error}");
+        let pump = of_polynomial(&open, Some(0.8e-3)).unwrap();
+        // x = 0.8: 1 - 0.8 + 0.32 = 0.52, slope -0.2
+        assert!((head(&pump, 0.8, 1.0) - 4e4 * 0.52).abs() < 1e-6);
+        assert!((head(&pump, 0.9, 1.0) - 4e4 * 0.50).abs() < 1e-6);
+        // Rising by up to 1 % before it falls: 1 + 0.2 x - x^2 has its top at x = 0.1.
+        let pump = of_polynomial(&scaled([1.0, 0.2, -1.0, 0.0]), None).unwrap();
+        assert!(pump.note().unwrap().contains("% of the head at zero flow"));
+        assert!((head(&pump, 0.6, 1.0) - 4e4 * 0.76).abs() < 4e4 * 1e-5);
+        let flows: Vec<f64> = (-300..=1500).map(|i| f64::from(i) * 1e-3).collect();
+        anergy_core::testing::check_monotone(|m| pump.curve.loss(m, 1.0, 1000.0), &flows).unwrap();
+    }
+
+    #[test]
+    fn power_law_with_any_exponent() {
+        // H0 40 kPa, free flow 1 l/s, n = 1.5: at 0.25 l/s 40 (1 - 0.125) = 35 kPa; at half speed and
+        // 0.125 l/s a quarter of it; beyond the free flow with the slope -1.5 * 40 kPa s/l.
+        let of = |exponent| {
+            let params = PumpParams {
+                head_max_pa: Some(4e4),
+                free_flow_m3_s: Some(1e-3),
+                curve_exponent: Some(exponent),
+                ..PumpParams::default()
+            };
+            params.build(&Medium::default()).unwrap()
+        };
+        let pump = of(1.5);
+        assert!((head(&pump, 0.25, 1.0) - 35_000.0).abs() < 1e-6);
+        assert!((head(&pump, 0.125, 0.5) - 8_750.0).abs() < 1e-6);
+        assert!((head(&pump, 1.1, 1.0) + 6_000.0).abs() < 1e-6);
+        assert!((head(&pump, -0.25, 1.0) - 45_000.0).abs() < 1e-6);
+        let quadratic = PumpParams {
+            head_max_pa: Some(4e4),
+            free_flow_m3_s: Some(1e-3),
+            ..PumpParams::default()
+        };
+        assert_eq!(of(2.0), quadratic.build(&Medium::default()).unwrap());
+    }
+
+    #[test]
+    fn a_head_belongs_to_a_speed() {
+        let table = of_table([100.0, 90.0, 50.0]).unwrap();
+        for pump in [table, PumpParams::default().build(&Medium::default()).unwrap()] {
+            for speed in [0.0, 0.02, 0.3, 0.99] {
+                let dp = -head(&pump, 0.05, speed);
+                let found = pump.speed_at(0.05, dp, 1000.0);
+                assert!((found - speed).abs() < 1e-7, "{found} for {speed}");
+            }
+            assert_eq!(pump.speed_at(0.05, -1e9, 1000.0), 1.0);
+            assert_eq!(pump.speed_at(0.05, 1e9, 1000.0), 0.0);
+        }
     }
 }
