@@ -29,20 +29,6 @@ pub fn quadratic_slope_at_zero(coefficient: f64, m_turbulent: f64) -> f64 {
     0.375 * coefficient * m_turbulent
 }
 
-/// Smooth power law `coefficient m|m|^(exponent-1)` (1 < exponent < 3) above `m_turbulent` (> 0); below,
-/// with `x = m/m_turbulent`, the odd cubic `x ((3-n)/2 + (n-1)/2 x^2)` that joins it with its slope.
-#[inline]
-pub fn power(m: f64, coefficient: f64, exponent: f64, m_turbulent: f64) -> Linear {
-    if m.abs() >= m_turbulent {
-        let slope = coefficient * m.abs().powf(exponent - 1.0);
-        Linear::new(slope * m, exponent * slope)
-    } else {
-        let scale = coefficient * m_turbulent.powf(exponent - 1.0);
-        let (x, linear, cubic) = (m / m_turbulent, 0.5 * (3.0 - exponent), 0.5 * (exponent - 1.0));
-        Linear::new(scale * m * (linear + cubic * x * x), scale * (linear + 3.0 * cubic * x * x))
-    }
-}
-
 /// C1 step from 0 (x <= 0) to 1 (x >= 1): `x^2 (3 - 2x)`.
 #[inline]
 pub fn smoothstep(x: f64) -> f64 {
@@ -55,17 +41,15 @@ pub fn smoothstep(x: f64) -> f64 {
 #[inline]
 pub fn power(m: f64, coefficient: f64, exponent: f64, m_turbulent: f64) -> Linear {
     let n = exponent;
+    if m.abs() >= m_turbulent {
+        let slope = coefficient * m.abs().powf(n - 1.0);
+        return Linear::new(slope * m, n * slope);
+    }
     let x = m.abs() / m_turbulent;
-    let (value, slope) = if x >= 1.0 {
-        let below = x.powf(n - 1.0);
-        (x * below, n * below)
-    } else {
-        let (b, k) = (0.5 * (n - 1.0).min(1.0), 2.0 * (n - 1.0).max(1.0));
-        let bent = b * x.powf(k);
-        (x * (1.0 - b + bent), 1.0 - b + (1.0 + k) * bent)
-    };
-    let scale = coefficient * m_turbulent.powf(n);
-    Linear::new((scale * value).copysign(m), scale / m_turbulent * slope)
+    let (b, k) = (0.5 * (n - 1.0).min(1.0), 2.0 * (n - 1.0).max(1.0));
+    let bent = b * x.powf(k);
+    let scale = coefficient * m_turbulent.powf(n - 1.0);
+    Linear::new(scale * m * (1.0 - b + bent), scale * (1.0 - b + (1.0 + k) * bent))
 }
 
 /// The larger of two laws, C1 where they cross: `max(a, b) + e^2/(2 (|a - b| + s))` with
