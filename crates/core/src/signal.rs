@@ -2,6 +2,7 @@
 
 use crate::ids::SignalId;
 use std::collections::HashMap;
+use thiserror::Error;
 
 /// What is known of one input signal.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +19,16 @@ pub struct SignalSpec {
     pub max: f64,
 }
 
+/// Two signals of one name.
+#[derive(Debug, Error, Clone, PartialEq, Eq)]
+#[error("the signal \"{name}\" exists already")]
+pub struct DoubledSignal {
+    /// The name.
+    pub name: String,
+    /// The signal that has it.
+    pub id: SignalId,
+}
+
 /// All input signals of a model; inside a step only [`SignalId`]s exist.
 #[derive(Debug, Clone, Default)]
 pub struct SignalTable {
@@ -26,15 +37,18 @@ pub struct SignalTable {
 }
 
 impl SignalTable {
-    /// Adds a signal. A name that exists already keeps its first meaning; the old id is returned.
-    pub fn add(&mut self, spec: SignalSpec) -> SignalId {
+    /// Adds a signal.
+    ///
+    /// # Errors
+    /// When a signal of this name exists: one of the two could never be driven.
+    pub fn add(&mut self, spec: SignalSpec) -> Result<SignalId, DoubledSignal> {
         if let Some(&id) = self.index.get(&spec.name) {
-            return id;
+            return Err(DoubledSignal { name: spec.name, id });
         }
         let id = SignalId::from_index(self.specs.len());
         self.index.insert(spec.name.clone(), id);
         self.specs.push(spec);
-        id
+        Ok(id)
     }
 
     /// The id of a name.
@@ -67,5 +81,28 @@ impl Signals<'_> {
     #[inline]
     pub fn get(&self, i: usize) -> f64 {
         self.0[i]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_given_once() {
+        let spec = |name: &str, initial| SignalSpec {
+            name: name.into(),
+            unit: "k",
+            initial,
+            min: 0.0,
+            max: 500.0,
+        };
+        let mut table = SignalTable::default();
+        let id = table.add(spec("ground.temperature_k", 285.0)).unwrap();
+        assert_ne!(table.add(spec("hall.temperature_k", 290.0)).unwrap(), id);
+        let doubled = table.add(spec("ground.temperature_k", 300.0)).unwrap_err();
+        assert_eq!(doubled.id, id);
+        assert_eq!(doubled.to_string(), "the signal \"ground.temperature_k\" exists already");
+        assert_eq!(table.initial_values(), [285.0, 290.0]);
     }
 }

@@ -25,7 +25,7 @@ pub(crate) fn liquid(field: &'static str, t_k: f64) -> Result<f64, UnitError> {
         Err(UnitError::OutOfRange {
             field,
             value: t_k,
-            requirement: "must lie between 273.15 K (0 degC) and 373.15 K (100 degC)",
+            requirement: "must lie between 0 degC (273.15 K) and 100 degC (373.15 K)",
         })
     }
 }

@@ -3,21 +3,25 @@
 mod network;
 mod signals;
 
+pub(crate) use network::pipe_temperatures;
+
 use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
 use crate::plan::{Plan, PlannedUnit};
 use crate::state::State;
+use crate::temperatures::SURROUNDINGS;
+use crate::wording::refused;
 use anergy_core::clock::Time;
 use anergy_core::ids::{EdgeId, SignalId};
 use anergy_core::recorder::{MapEdge, MapNode, NetworkMap};
-use anergy_core::signal::SignalTable;
+use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::graph::Network;
 use anergy_network::interface::{Station, StationState};
 use anergy_network::state::NetworkState;
-use signals::{Writer, edge_signals, free_signal, temperature_signal};
+use signals::{Writer, free_signal, temperature_signal};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -33,7 +37,7 @@ pub fn build(model: &Model) -> Result<Arc<Plan>, Diagnostics> {
     let plan = builder.plan();
     match plan {
         Some(plan) if builder.problems.is_empty() => Ok(Arc::new(plan)),
-        _ => Err(Diagnostics(builder.problems)),
+        _ => Err(Diagnostics(builder.problems).without_repetition()),
     }
 }
 
@@ -51,15 +55,29 @@ impl Builder<'_> {
         });
     }
 
+    /// Adds a signal of the entry at a place; reports one whose name is taken.
+    fn add_signal(
+        &mut self,
+        signals: &mut SignalTable,
+        spec: SignalSpec,
+        place: &Place,
+    ) -> SignalId {
+        signals.add(spec).unwrap_or_else(|doubled| {
+            let component = doubled.name.rsplit_once('.').map_or("", |(component, _)| component);
+            let what = place.entry_or(component);
+            let hint = match component {
+                "ground" => "`ground` is what surrounds the pipes: give this another id",
+                _ => "something else has the same name: give one of the two another id",
+            };
+            self.report(format!("{what}: {doubled}"), place.span.clone(), Some(hint.to_owned()));
+            doubled.id
+        })
+    }
+
     fn check_names(&mut self) {
         let model = self.model;
         let nodes = model.nodes.iter().map(|node| ("node", &node.entry.id, &node.place));
         self.check_doubled(nodes.collect());
-        if let Some(node) = model.nodes.iter().find(|node| node.entry.id == "ground") {
-            let hint = "`ground` is what surrounds the pipes; give the node another id".to_owned();
-            let span = node.place.span.clone();
-            self.report("a node cannot be called \"ground\"".into(), span, Some(hint));
-        }
         let others = model
             .edges
             .iter()
@@ -81,7 +99,7 @@ impl Builder<'_> {
                 let message = if before == what {
                     format!("{what} \"{id}\" exists twice")
                 } else {
-                    format!("{what} \"{id}\" has the name of a {before}")
+                    format!("{what} \"{id}\" has the name of {} {before}", article(before))
                 };
                 let hint = "give one of them another id".to_owned();
                 self.report(message, place.span.clone(), Some(hint));
@@ -106,10 +124,11 @@ impl Builder<'_> {
             self.check_graph(&network);
         }
         let mut signals = SignalTable::default();
-        let ground = signals.add(temperature_signal("ground.temperature_k", model.ground_k));
+        let ground = temperature_signal("ground.temperature_k", model.ground_k, &SURROUNDINGS);
+        let ground = self.add_signal(&mut signals, ground, &Place::default());
         let node_inputs = self.node_signals(&mut signals);
         let commands = if whole {
-            edge_signals(model, &network, &mut signals)
+            self.edge_signals(&network, &mut signals)
         } else {
             vec![None; model.edges.len()]
         };
@@ -124,7 +143,8 @@ impl Builder<'_> {
             .map(|spec| {
                 // A controller that cannot be built is reported later.
                 let set_point = spec.params.build(&()).map_or(0.0, |built| built.set_point());
-                signals.add(free_signal(&format!("{}.set_point", spec.id), "", set_point))
+                let signal = free_signal(&format!("{}.set_point", spec.id), "", set_point);
+                self.add_signal(&mut signals, signal, &spec.place)
             })
             .collect();
         // Without all edges there are not all signals: what is missing has been reported.
@@ -169,24 +189,24 @@ impl Builder<'_> {
     fn stations(&mut self, edge_ids: &HashMap<&str, usize>) -> Vec<Station> {
         let mut stations = Vec::new();
         for spec in &self.model.interfaces {
-            let mut find = |name: &str| {
+            let what = format!("interface \"{}\"", spec.id);
+            let what = spec.place.entry_or(&what);
+            let mut find = |field: &str, name: &str| {
                 let found = edge_ids.get(name).copied();
                 if found.is_none() {
                     let hint = did_you_mean(name, edge_ids.keys().copied());
-                    let message = format!("interface \"{}\": there is no edge \"{name}\"", spec.id);
-                    self.report(message, spec.place.span.clone(), hint);
+                    let message = format!("{what}: {field} names no edge: \"{name}\"");
+                    self.report(message, spec.place.of(field), hint);
                 }
                 found
             };
-            let edge = find(&spec.edge);
-            let pump = spec.pump.as_deref().and_then(&mut find);
-            let valve = spec.valve.as_deref().and_then(find);
+            let edge = find("edge", &spec.edge);
+            let pump = spec.pump.as_deref().and_then(|name| find("pump", name));
+            let valve = spec.valve.as_deref().and_then(|name| find("valve", name));
             if let Some(flow) = spec.requested_flow_m3_s.filter(|flow| *flow <= 0.0) {
-                let message = format!(
-                    "interface \"{}\": requested_flow_m3_s = {flow} must be positive",
-                    spec.id
-                );
-                self.report(message, spec.place.of("requested_flow_m3_s"), None);
+                let field = "requested_flow_m3_s";
+                let message = format!("{field} = {flow} must be positive");
+                self.problems.push(refused(what, &spec.place, Some(field), &message));
             }
             if let Some(edge) = edge {
                 stations.push(Station {
@@ -252,6 +272,10 @@ impl Builder<'_> {
             iterations: 0,
         }
     }
+}
+
+fn article(word: &str) -> &'static str {
+    if word.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
 }
 
 /// Which edges wait for the pump of which station.

@@ -42,6 +42,20 @@ impl Diagnostic {
 pub struct Diagnostics(pub Vec<Diagnostic>);
 
 impl Diagnostics {
+    /// What is found in both pipes of a trench is one mistake of the user.
+    #[must_use]
+    pub(crate) fn without_repetition(mut self) -> Self {
+        let mut seen: Vec<Diagnostic> = Vec::new();
+        self.0.retain(|problem| {
+            let fresh = !seen.contains(problem);
+            if fresh {
+                seen.push(problem.clone());
+            }
+            fresh
+        });
+        self
+    }
+
     /// One line per problem with line, column and hint.
     pub fn render(&self, text: &str) -> String {
         let mut out = String::new();
@@ -69,11 +83,13 @@ impl fmt::Display for Diagnostics {
 
 impl std::error::Error for Diagnostics {}
 
-/// `; did you mean "x"?` for the most similar of the known words.
+/// `did you mean "x"?` for the most similar of the known words.
 pub(crate) fn did_you_mean<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     known
         .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
         .filter(|(distance, candidate)| *distance <= 1 + candidate.chars().count() / 4)
+        // Two short words without a letter in common are not alike.
+        .filter(|(distance, _)| *distance < word.chars().count())
         .min()
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
 }

@@ -5,26 +5,23 @@
 
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Tree, TreeKind};
-use anergy_core::units::{Unit, alternatives};
+use crate::grammar::{Grammar, Registered};
+use crate::model::WrittenField;
+use crate::wording::{named, type_error};
+use anergy_core::units::Unit;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use serde_path_to_error::{Path, Segment};
 use std::ops::Range;
 
-/// A table with SI fields only, and where each came from.
+/// A table with SI fields only, and how each was written.
 #[derive(Debug, Clone, Default)]
 pub struct SiTable {
     /// The values.
     pub values: Map<String, Value>,
-    /// SI name, name in the file, place of the value.
-    pub places: Vec<(String, String, Option<Range<usize>>)>,
-}
-
-impl SiTable {
-    /// The place of a field's value.
-    pub fn place(&self, si_name: &str) -> Option<Range<usize>> {
-        self.places.iter().find(|(si, ..)| si == si_name).and_then(|(.., span)| span.clone())
-    }
+    /// Their spelling and place.
+    pub fields: Vec<WrittenField>,
 }
 
 /// Collects problems while entries are read.
@@ -34,6 +31,8 @@ pub struct Reader {
     pub problems: Vec<Diagnostic>,
 }
 
+type TypeError = serde_path_to_error::Error<serde_json::Error>;
+
 impl Reader {
     /// Adds a problem.
     pub fn report(&mut self, problem: Diagnostic) {
@@ -41,22 +40,46 @@ impl Reader {
     }
 
     /// Reads a table as `T`; `what` names the entry in messages, for example `edge "p1" (pipe)`.
-    pub fn read<T: DeserializeOwned + JsonSchema>(&mut self, what: &str, tree: &Tree) -> Option<T> {
-        let schema = schemars::schema_for!(T);
-        self.read_with(what, tree, &schema, |value| serde_path_to_error::deserialize(value))
-            .map(|(entry, _)| entry)
+    pub fn read<T: DeserializeOwned + JsonSchema + 'static>(
+        &mut self,
+        what: &str,
+        tree: &Tree,
+    ) -> Option<(T, SiTable)> {
+        let grammar = Grammar::of::<T>();
+        self.read_with(what, tree, &grammar, &[], |value| serde_path_to_error::deserialize(value))
     }
 
-    /// Reads a table against a schema with a given deserialisation; also returns the SI table.
+    /// Reads a table as parameters of a kind; `also` are words that have been taken out already.
+    pub fn read_kind<P: Registered>(
+        &mut self,
+        what: &str,
+        tree: &Tree,
+        kind: &str,
+        also: &[&str],
+    ) -> Option<(P, SiTable)> {
+        let grammar = Grammar::of_kind::<P>(kind)?;
+        self.read_with(what, tree, &grammar, also, |value| {
+            let mut track = serde_path_to_error::Track::new();
+            let deserializer = serde_path_to_error::Deserializer::new(value, &mut track);
+            // The grammar is that of a known kind, so there always is a result.
+            let result = P::deserialize(kind, deserializer).unwrap_or_else(|| {
+                Err(<serde_json::Error as serde::de::Error>::custom("the kind is not known"))
+            });
+            result.map_err(|error| TypeError::new(track.path(), error))
+        })
+    }
+
+    /// Reads a table with a given grammar and deserialisation.
     pub fn read_with<T>(
         &mut self,
         what: &str,
         tree: &Tree,
-        schema: &schemars::Schema,
-        deserialize: impl FnOnce(Value) -> Result<T, serde_path_to_error::Error<serde_json::Error>>,
+        grammar: &Grammar,
+        also: &[&str],
+        deserialize: impl FnOnce(Value) -> Result<T, TypeError>,
     ) -> Option<(T, SiTable)> {
         let before = self.problems.len();
-        let table = self.si_table(what, tree, schema);
+        let table = self.si_table(what, tree, grammar, also);
         if self.problems.len() > before {
             return None;
         }
@@ -70,143 +93,146 @@ impl Reader {
     }
 
     /// Renames and converts all fields to SI; reports unknown, doubled and missing ones.
-    fn si_table(&mut self, what: &str, tree: &Tree, schema: &schemars::Schema) -> SiTable {
+    fn si_table(&mut self, what: &str, tree: &Tree, grammar: &Grammar, also: &[&str]) -> SiTable {
         let mut table = SiTable::default();
         if !matches!(tree.kind, TreeKind::Table(_)) {
-            self.report(Diagnostic::new(
-                format!("{what} must be a table, not {}", tree.type_name()),
-                tree.span.clone(),
-            ));
+            let message = format!("{what} must be a table, not {}", tree.type_name());
+            let problem = Diagnostic::new(message, tree.span.clone());
+            self.report(match &tree.kind {
+                TreeKind::Array(_) => problem.with_hint(format!("write {what} in single brackets")),
+                _ => problem.with_hint("a table is a section of its own or { field = value, ... }"),
+            });
             return table;
         }
-        let known = property_names(schema);
+        let mut meant = Vec::new();
         for (key, value) in tree.entries() {
-            let Some((si_name, unit)) = si_field(&known, &key.name) else {
-                self.report_unknown(what, &key.name, key.span.clone(), &known);
+            let Some((si, unit)) = grammar.field(&key.name) else {
+                meant.extend(self.report_unknown(what, &key.name, key.span.clone(), grammar, also));
                 continue;
             };
-            if let Some((_, other, _)) = table.places.iter().find(|(si, ..)| *si == si_name) {
-                let message = format!("{what}: {} and {other} are the same field", key.name);
+            if let Some(other) = table.fields.iter().find(|other| other.si == si) {
+                let message = format!("{what}: {} and {} are the same field", key.name, other.name);
                 self.report(Diagnostic::new(message, key.span.clone()).with_hint("give only one"));
                 continue;
             }
-            let converted = match unit {
-                None => value.to_json(),
-                Some(unit) => convert(&value.to_json(), unit),
+            let written = value.to_json();
+            let si_value = match unit {
+                None => Some(written.clone()),
+                Some(unit) => converted(&written, unit),
             };
-            table.values.insert(si_name.clone(), converted);
-            table.places.push((si_name, key.name.clone(), value.span.clone()));
+            let Some(si_value) = si_value else {
+                let message =
+                    format!("{what}: {} is too large a number", named(&key.name, &written));
+                self.report(Diagnostic::new(message, value.span.clone()));
+                continue;
+            };
+            table.values.insert(si.clone(), si_value.clone());
+            let (name, span) = (key.name.clone(), value.span.clone());
+            table.fields.push(WrittenField { si, name, value: written, si_value, span });
         }
-        let required = schema.get("required").and_then(Value::as_array);
-        for name in required.into_iter().flatten().filter_map(Value::as_str) {
-            let misspelt = self.problems.iter().any(|problem| {
-                problem.message.starts_with(what)
-                    && problem.hint.as_ref().is_some_and(|hint| hint.contains(name))
-            });
-            if !table.values.contains_key(name) && !misspelt {
-                let message = format!("{what}: {name} is missing");
-                let mut problem = Diagnostic::new(message, tree.span.clone());
-                let others: Vec<String> = alternatives(name).map(|(name, _)| name).collect();
-                if !others.is_empty() {
-                    problem = problem.with_hint(format!("also possible: {}", others.join(", ")));
-                }
-                self.report(problem);
+        for name in &grammar.required {
+            let tried = meant.contains(name)
+                || tree.entries().iter().any(|(key, _)| {
+                    grammar.field(&key.name).is_some_and(|(field, _)| field == *name)
+                });
+            if !tried {
+                self.report_missing(what, name, tree.span.clone());
             }
         }
         table
     }
 
+    /// Reports a field that an entry needs, with the units it can be given in.
+    pub fn report_missing(&mut self, what: &str, field: &str, span: Option<Range<usize>>) {
+        let problem = Diagnostic::new(format!("{what}: {field} is missing"), span);
+        let others = Grammar::spellings(field);
+        self.report(match &others[1..] {
+            [] => problem,
+            others => problem.with_hint(format!("also possible: {}", others.join(", "))),
+        });
+    }
+
+    /// Reports a field that an entry does not have; returns the one that was probably meant.
     fn report_unknown(
         &mut self,
         what: &str,
         name: &str,
         span: Option<Range<usize>>,
-        known: &[String],
-    ) {
-        let all: Vec<String> = known
+        grammar: &Grammar,
+        also: &[&str],
+    ) -> Option<String> {
+        let problem = Diagnostic::new(format!("{what}: unknown field `{name}`"), span);
+        let spellings = |field: &String| Grammar::spellings(field);
+        let all: Vec<String> = grammar
+            .fields
             .iter()
-            .flat_map(|name| {
-                std::iter::once(name.clone()).chain(alternatives(name).map(|(name, _)| name))
-            })
+            .flat_map(spellings)
+            .chain(also.iter().map(|word| (*word).to_owned()))
             .collect();
-        let stem = anergy_core::units::split_suffix(name).map(|(stem, _)| stem);
-        let same_quantity = known.iter().find(|known| {
-            stem.is_some() && anergy_core::units::split_suffix(known).map(|(stem, _)| stem) == stem
-        });
-        let hint = if let Some(field) = same_quantity {
-            let units: Vec<String> = std::iter::once(field.clone())
-                .chain(alternatives(field).map(|(name, _)| name))
-                .collect();
-            format!("wrong unit? possible are {}", units.join(", "))
-        } else if let Some(hint) = did_you_mean(name, all.iter().map(String::as_str)) {
-            hint
-        } else {
-            format!("known fields: {}", known.join(", "))
-        };
-        self.report(
-            Diagnostic::new(format!("{what}: unknown field `{name}`"), span).with_hint(hint),
-        );
+        // A known unit of another quantity, or an unknown unit, before a word that looks alike.
+        if let Some(field) = grammar.same_quantity(name) {
+            let possible = Grammar::spellings(field).join(", ");
+            self.report(problem.with_hint(format!("wrong unit? possible are {possible}")));
+            return Some(field.to_owned());
+        }
+        if let Some(hint) = did_you_mean(name, all.iter().map(String::as_str)) {
+            let meant = hint.split('`').nth(1).and_then(|name| grammar.field(name));
+            self.report(problem.with_hint(hint));
+            return meant.map(|(field, _)| field);
+        }
+        let known = grammar.fields.iter().map(String::as_str).chain(also.iter().copied());
+        let known: Vec<&str> = known.collect();
+        self.report(problem.with_hint(format!("known fields: {}", known.join(", "))));
+        None
     }
 
-    fn report_type_error(
-        &mut self,
-        what: &str,
-        tree: &Tree,
-        table: &SiTable,
-        error: &serde_path_to_error::Error<serde_json::Error>,
-    ) {
-        let path = error.path().to_string();
-        let field = path.split(['.', '[']).next().unwrap_or_default();
-        let place = table.places.iter().find(|(si, ..)| si == field);
-        let (name, span) = match place {
-            Some((_, name, span)) => (name.as_str(), span.clone()),
-            None => ("", tree.span.clone()),
-        };
+    fn report_type_error(&mut self, what: &str, tree: &Tree, table: &SiTable, error: &TypeError) {
         // serde_json appends a position in its own text, which means nothing here.
         let reason = error.inner().to_string();
         let reason = reason.split(" at line ").next().unwrap_or_default();
-        let message = if name.is_empty() {
-            format!("{what}: {reason}")
-        } else {
-            format!("{what}: {name}: {reason}")
+        let Some((name, found, whole)) = part_of(tree, table, error.path()) else {
+            self.report(Diagnostic::new(format!("{what}: {reason}"), tree.span.clone()));
+            return;
         };
-        let mut problem = Diagnostic::new(message, span);
-        if reason.contains("string") && reason.contains("expected f64") {
-            problem = problem
-                .with_hint("write a number without unit; the unit is the end of the field's name");
-        }
-        self.report(problem);
+        let value = found.to_json();
+        let subject = if whole { named(name, &value) } else { format!("{name}: {value}") };
+        let (message, hint) = type_error(&subject, &value, reason);
+        let problem = Diagnostic::new(format!("{what}: {message}"), found.span.clone());
+        self.report(match hint {
+            Some(hint) => problem.with_hint(hint),
+            None => problem,
+        });
     }
 }
 
-/// The names of the fields of an object schema.
-pub fn property_names(schema: &schemars::Schema) -> Vec<String> {
-    schema
-        .get("properties")
-        .and_then(Value::as_object)
-        .map(|properties| properties.keys().cloned().collect())
-        .unwrap_or_default()
-}
-
-/// The SI field that a name in the file means, and the unit to convert from.
-fn si_field(known: &[String], name: &str) -> Option<(String, Option<Unit>)> {
-    if known.iter().any(|field| field == name) {
-        return Some((name.to_owned(), None));
+/// The name of the field that a path leads into, the innermost value on it, and whether that is the
+/// whole field.
+fn part_of<'t>(tree: &'t Tree, table: &SiTable, path: &Path) -> Option<(&'t str, &'t Tree, bool)> {
+    let mut segments = path.iter();
+    let Some(Segment::Map { key }) = segments.next() else { return None };
+    let written = table.fields.iter().find(|written| written.si == *key)?;
+    let (key, value) = tree.entries().iter().find(|(key, _)| key.name == written.name)?;
+    let (mut found, mut whole) = (value, true);
+    for segment in segments {
+        found = match (segment, &found.kind) {
+            (Segment::Seq { index }, TreeKind::Array(items)) => items.get(*index)?,
+            (Segment::Map { key }, TreeKind::Table(_)) => found.get(key)?,
+            _ => break,
+        };
+        whole = false;
     }
-    known.iter().find_map(|field| {
-        alternatives(field)
-            .find(|(alternative, _)| alternative == name)
-            .map(|(_, unit)| (field.clone(), Some(unit)))
-    })
+    Some((&key.name, found, whole))
 }
 
-/// Converts a number, or all numbers of an array; leaves other values for the type check.
-fn convert(value: &Value, unit: Unit) -> Value {
+/// Converts a number, or all numbers of an array; leaves other values for the type check. `None` when a
+/// number is infinite in SI.
+fn converted(value: &Value, unit: Unit) -> Option<Value> {
     match value {
         Value::Number(number) => {
-            number.as_f64().map_or_else(|| value.clone(), |number| Value::from(unit.to_si(number)))
+            let si = unit.to_si(number.as_f64()?);
+            si.is_finite().then(|| Value::from(si))
         }
-        Value::Array(items) => items.iter().map(|item| convert(item, unit)).collect(),
-        other => other.clone(),
+        Value::Array(items) => items.iter().map(|item| converted(item, unit)).collect(),
+        other => Some(other.clone()),
     }
 }

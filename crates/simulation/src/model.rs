@@ -4,21 +4,42 @@
 //! `isolate` cuts, and what `build` turns into a simulation.
 
 use crate::diagnostic::Diagnostics;
-use crate::model_file::{Interpolation, NodeEntry, PressureReferenceEntry, RunEntry};
+use crate::model_file::{
+    InterfaceEntry, Interpolation, NodeEntry, PressureReferenceEntry, RunEntry,
+};
 use anergy_control::controllers::ControllerParams;
 use anergy_core::medium::Medium;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
+use serde_json::Value;
 use std::ops::Range;
 use std::path::Path;
 
-/// Where an entry and its fields stand in the model text.
+/// A field as it was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrittenField {
+    /// Its SI name.
+    pub si: String,
+    /// Its name in the file.
+    pub name: String,
+    /// Its value in the file.
+    pub value: Value,
+    /// Its value in SI.
+    pub si_value: Value,
+    /// The place of the value.
+    pub span: Option<Range<usize>>,
+}
+
+/// Where an entry and its fields stand in the model text, and how they are written there.
 #[derive(Debug, Clone, Default)]
 pub struct Place {
+    /// What the user wrote, in words: `edge "p1" (pipe)`, or the composite it comes from, such as
+    /// `trench "a-b"`. Empty for what does not come from a file.
+    pub entry: String,
     /// The whole entry.
     pub span: Option<Range<usize>>,
-    /// The fields that were given: SI name and place of the value.
-    pub fields: Vec<(String, Option<Range<usize>>)>,
+    /// The fields that were given.
+    pub fields: Vec<WrittenField>,
 }
 
 /// Two entries are the same wherever they stand.
@@ -33,14 +54,19 @@ impl Place {
     pub fn of(&self, field: &str) -> Option<Range<usize>> {
         self.fields
             .iter()
-            .find(|(name, _)| name == field)
-            .and_then(|(_, span)| span.clone())
+            .find(|written| written.si == field)
+            .and_then(|written| written.span.clone())
             .or_else(|| self.span.clone())
+    }
+
+    /// What the user wrote, or `otherwise` where there is no file.
+    pub fn entry_or<'a>(&'a self, otherwise: &'a str) -> &'a str {
+        if self.entry.is_empty() { otherwise } else { &self.entry }
     }
 
     /// Whether a field was given.
     pub fn has(&self, field: &str) -> bool {
-        self.fields.iter().any(|(name, _)| name == field)
+        self.fields.iter().any(|written| written.si == field)
     }
 }
 
@@ -102,6 +128,14 @@ pub struct InterfaceSpec {
     pub requested_flow_m3_s: Option<f64>,
     /// Where it stands.
     pub place: Place,
+}
+
+impl InterfaceSpec {
+    /// As written.
+    pub(crate) fn new(entry: InterfaceEntry, place: Place) -> Self {
+        let InterfaceEntry { id, edge, pump, valve, requested_flow_m3_s } = entry;
+        Self { id, edge, pump, valve, requested_flow_m3_s, place }
+    }
 }
 
 /// A controller.
@@ -193,9 +227,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::from_toml`]; there are no places, names are given instead.
-    pub fn from_json(value: &serde_json::Value, dir: &Path) -> Result<Self, Diagnostics> {
+    pub fn from_json(value: &Value, dir: &Path) -> Result<Self, Diagnostics> {
         let text = match value {
-            serde_json::Value::Object(map) => crate::document::to_toml(map)?,
+            Value::Object(map) => crate::document::to_toml(map)?,
             _ => String::new(),
         };
         // Through the text, so that places and hints are those of the file the user could save.

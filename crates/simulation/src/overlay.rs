@@ -176,6 +176,10 @@ impl Model {
         node.entry.id.clone_from(&inner);
         node.entry.kind = crate::model_file::NodeEntryKind::Junction;
         node.entry.volume_m3 = 0.0;
+        // What a junction cannot have.
+        node.entry.pressure_pa = None;
+        node.entry.m_flow_kg_s = None;
+        node.entry.temperature_k = None;
         self.nodes.push(node);
         self.edges.push(EdgeSpec {
             id: id.to_owned(),
@@ -228,7 +232,7 @@ fn changed(
     schema: Option<&schemars::Schema>,
     new: impl Fn(&Value) -> Option<Value>,
 ) -> Result<Value, OverlayError> {
-    let known = schema.map(crate::fields::property_names).unwrap_or_default();
+    let known = schema.map(crate::grammar::property_names).unwrap_or_default();
     if !known.iter().any(|name| name == field) {
         return Err(OverlayError::UnknownParameter { parameter: parameter.to_owned() });
     }

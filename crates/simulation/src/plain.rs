@@ -155,9 +155,9 @@ fn collect(
     let properties = schema.get("properties").and_then(Value::as_object);
     for (field, property) in properties.into_iter().flatten() {
         // What a composite filled in stands at the place of the whole entry.
-        let given = place.fields.iter().find(|(name, _)| name == field);
+        let given = place.fields.iter().find(|written| written.si == *field);
         let source = match given {
-            Some((_, span)) if span.is_some() && *span == place.span => {
+            Some(written) if written.span.is_some() && written.span == place.span => {
                 "the published station of the laboratory"
             }
             Some(_) => continue,

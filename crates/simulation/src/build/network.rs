@@ -2,16 +2,48 @@
 
 use super::Builder;
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::model::EdgeSpec;
+use crate::model::{EdgeSpec, Place};
 use crate::model_file::NodeEntryKind;
+use crate::temperatures::{SURROUNDINGS, WATER};
+use crate::wording::refused;
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_network::elements::ElementParams;
+use anergy_network::elements::pipe::PipeParams;
 use anergy_network::graph::{Edge, GraphProblem, Network, Node, NodeKind};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+
+/// The lowest pressure above the atmosphere that a file can mean: an empty pipe, rounded.
+const VACUUM_PA: f64 = -1e5;
+
+/// The problems of the temperatures of a pipe. `what` names a pipe that is in no file.
+pub(crate) fn pipe_temperatures(what: &str, pipe: &PipeParams, place: &Place) -> Vec<Diagnostic> {
+    let water = pipe.initial_k.and_then(|t_k| WATER.problem(what, "initial_k", t_k, place));
+    let around = pipe
+        .surroundings_k
+        .and_then(|t_k| SURROUNDINGS.problem(what, "surroundings_k", t_k, place));
+    water.into_iter().chain(around).collect()
+}
+
+fn below_vacuum(what: &str, pressure_pa: f64, place: &Place) -> Option<Diagnostic> {
+    (pressure_pa < VACUUM_PA).then(|| {
+        let message = format!("pressure_pa = {pressure_pa} is below a vacuum");
+        refused(what, place, Some("pressure_pa"), &message)
+            .with_hint("pressures are above the atmosphere: not below -1 bar")
+    })
+}
 
 impl Builder<'_> {
     pub(super) fn nodes(&mut self) -> Vec<Node> {
+        for spec in &self.model.nodes {
+            let what = format!("node \"{}\"", spec.entry.id);
+            if let Some(t_k) = spec.entry.temperature_k {
+                self.problems.extend(WATER.problem(&what, "temperature_k", t_k, &spec.place));
+            }
+            if let Some(pressure_pa) = spec.entry.pressure_pa {
+                self.problems.extend(below_vacuum(&what, pressure_pa, &spec.place));
+            }
+        }
         self.model
             .nodes
             .iter()
@@ -29,6 +61,8 @@ impl Builder<'_> {
 
     pub(super) fn references(&mut self, nodes: &mut [Node], node_ids: &HashMap<&str, usize>) {
         for spec in &self.model.references {
+            let pressure_pa = spec.entry.pressure_pa;
+            self.problems.extend(below_vacuum("pressure_reference", pressure_pa, &spec.place));
             let name = spec.entry.node.as_str();
             let Some(&node) = node_ids.get(name) else {
                 let hint = did_you_mean(name, node_ids.keys().copied());
@@ -66,16 +100,19 @@ impl Builder<'_> {
             });
             if spec.from == spec.to && ends[0].is_some() {
                 let message = format!("edge \"{}\" begins and ends at \"{}\"", spec.id, spec.to);
-                self.report(message, spec.place.span.clone(), None);
+                let hint = "an edge joins two nodes".to_owned();
+                self.report(message, spec.place.of("to"), Some(hint));
             }
             let partner = self.partner(spec, edge_ids);
+            if let ElementParams::Pipe(pipe) = &spec.params {
+                let what = format!("edge \"{}\" (pipe)", spec.id);
+                self.problems.extend(pipe_temperatures(&what, pipe, &spec.place));
+            }
             match spec.params.build(&self.model.medium) {
                 Err(error) => {
-                    let span = error
-                        .field()
-                        .map_or_else(|| spec.place.span.clone(), |field| spec.place.of(field));
-                    let message = format!("edge \"{}\" ({}): {error}", spec.id, spec.params.kind());
-                    self.report(message, span, None);
+                    let what = format!("edge \"{}\" ({})", spec.id, spec.params.kind());
+                    let problem = refused(&what, &spec.place, error.field(), &error.to_string());
+                    self.problems.push(problem);
                 }
                 Ok(element) => {
                     if let [Some(from), Some(to)] = ends {
@@ -166,9 +203,39 @@ impl Builder<'_> {
 
     pub(super) fn check_graph(&mut self, network: &Network) {
         let name = |id: &NodeId| self.model.nodes[id.index()].entry.id.clone();
+        let mut joined = vec![false; network.nodes.len()];
+        for edge in &network.edges {
+            joined[edge.from.index()] = true;
+            joined[edge.to.index()] = true;
+        }
         let mut found = Vec::new();
+        let with_edge: HashSet<&str> = self
+            .model
+            .nodes
+            .iter()
+            .zip(&joined)
+            .filter(|(_, joined)| **joined)
+            .map(|(spec, _)| spec.site.as_str())
+            .collect();
+        for (spec, _) in self.model.nodes.iter().zip(&joined).filter(|(_, joined)| !**joined) {
+            let whole_site = !spec.site.is_empty() && !with_edge.contains(spec.site.as_str());
+            let what = if whole_site {
+                format!("site \"{}\"", spec.site)
+            } else {
+                format!("node \"{}\"", spec.entry.id)
+            };
+            let hint = "join it with a [[trench]] or an [[edge]], or take it out";
+            let problem = Diagnostic::new(format!("{what} has no edge"), spec.place.span.clone());
+            found.push(problem.with_hint(hint));
+        }
         for problem in network.problems() {
             found.push(match problem {
+                // Said above.
+                GraphProblem::NoPressureReference { circuit }
+                    if circuit.iter().all(|node| !joined[node.index()]) =>
+                {
+                    continue;
+                }
                 GraphProblem::NoPressureReference { circuit } => {
                     let names: Vec<String> = circuit.iter().take(4).map(name).collect();
                     let more = circuit.len().saturating_sub(4);

@@ -3,9 +3,11 @@
 use super::Builder;
 use crate::diagnostic::did_you_mean;
 use crate::drivers::Driver;
-use crate::model::{Model, Place};
+use crate::model::{ControllerSpec, Place};
 use crate::model_file::NodeEntryKind;
 use crate::plan::{NodeInputs, Plan, PlannedController, PlannedUnit};
+use crate::temperatures::{SURROUNDINGS, Temperatures, WATER};
+use crate::wording::{in_percent, refused};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::signal::{SignalSpec, SignalTable};
@@ -29,7 +31,8 @@ impl Builder<'_> {
             let held = self.model.references.iter().find(|r| r.entry.node == entry.id);
             let pressure = held.map(|r| r.entry.pressure_pa).or(entry.pressure_pa);
             let mut add = |quantity: &str, unit: &'static str, value: f64| {
-                signals.add(free_signal(&format!("{}.{quantity}", entry.id), unit, value))
+                let signal = free_signal(&format!("{}.{quantity}", entry.id), unit, value);
+                self.add_signal(signals, signal, &spec.place)
             };
             let exchanges = entry.kind != NodeEntryKind::Junction;
             if held.is_some() || exchanges {
@@ -40,7 +43,9 @@ impl Builder<'_> {
                     .then(|| add("m_flow_kg_s", "kg_s", entry.m_flow_kg_s.unwrap_or(0.0)));
                 let t_k = exchanges.then(|| {
                     let value = entry.temperature_k.unwrap_or(self.model.run.initial_k);
-                    signals.add(temperature_signal(&format!("{}.temperature_k", entry.id), value))
+                    let name = format!("{}.temperature_k", entry.id);
+                    let signal = temperature_signal(&name, value, &WATER);
+                    self.add_signal(signals, signal, &spec.place)
                 });
                 inputs.push(NodeInputs { node, p_pa, m_flow_kg_s, t_k });
             }
@@ -58,11 +63,35 @@ impl Builder<'_> {
             .iter()
             .map(|spec| match &spec.params {
                 ElementParams::Pipe(pipe) => pipe.surroundings_k.map_or(ground, |t_k| {
-                    signals.add(temperature_signal(&format!("{}.surroundings_k", spec.id), t_k))
+                    let name = format!("{}.surroundings_k", spec.id);
+                    let signal = temperature_signal(&name, t_k, &SURROUNDINGS);
+                    self.add_signal(signals, signal, &spec.place)
                 }),
                 _ => ground,
             })
             .collect()
+    }
+
+    /// A command signal for every element with an actuator.
+    pub(super) fn edge_signals(
+        &mut self,
+        network: &Network,
+        signals: &mut SignalTable,
+    ) -> Vec<Option<SignalId>> {
+        let mut commands = Vec::with_capacity(network.edges.len());
+        for (spec, edge) in self.model.edges.iter().zip(&network.edges) {
+            commands.push(edge.element.actuator().map(|actuator| {
+                let signal = SignalSpec {
+                    name: format!("{}.{}", spec.id, actuator.command),
+                    unit: actuator.unit,
+                    initial: actuator.initial_command,
+                    min: actuator.min,
+                    max: actuator.max,
+                };
+                self.add_signal(signals, signal, &spec.place)
+            }));
+        }
+        commands
     }
 
     pub(super) fn units(
@@ -79,24 +108,23 @@ impl Builder<'_> {
             let equipment = match spec.params.build(&self.model.medium) {
                 Ok(equipment) => equipment,
                 Err(error) => {
-                    let span = error
-                        .field()
-                        .map_or_else(|| spec.place.span.clone(), |field| spec.place.of(field));
-                    let message = format!("unit \"{}\" ({}): {error}", spec.id, spec.params.kind());
-                    self.report(message, span, None);
+                    let what = format!("unit \"{}\" ({})", spec.id, spec.params.kind());
+                    let problem = refused(&what, &spec.place, error.field(), &error.to_string());
+                    self.problems.push(problem);
                     continue;
                 }
             };
             let Some(&edge) = edge_ids.get(spec.port.as_str()) else { continue };
             let first = signals.specs().len();
             for input in equipment.inputs() {
-                signals.add(SignalSpec {
+                let signal = SignalSpec {
                     name: format!("{}.{}", spec.id, input.name),
                     unit: input.unit,
                     initial: input.initial,
                     min: input.min,
                     max: f64::INFINITY,
-                });
+                };
+                self.add_signal(signals, signal, &spec.place);
             }
             let imposes_flow = network
                 .edges
@@ -152,13 +180,21 @@ impl Builder<'_> {
                 .map(|value| unit.map_or(*value, |unit| unit.to_si(*value)))
                 .collect();
             if let Some(i) = values.iter().position(|v| !(known.min..=known.max).contains(v)) {
+                let written = unit.map(|unit| format!(" ({} in SI)", unit.to_si(spec.values[i])));
                 let message = format!(
-                    "{}: value {} at {} s is outside {} to {}",
-                    spec.source, spec.values[i], spec.times_s[i], known.min, known.max
+                    "{}: value {}{} at {} s is outside the range of the signal: {}",
+                    spec.source,
+                    spec.values[i],
+                    written.unwrap_or_default(),
+                    spec.times_s[i],
+                    range(known)
                 );
                 let span =
                     spec.place.of(if spec.place.has("points") { "points" } else { "column" });
-                self.report(message, span, None);
+                let hint = ratio_hint(known, values[i])
+                    .map(|_| "for values in percent add unit = \"percent\"".to_owned())
+                    .or_else(|| celsius_hint(known, values[i]));
+                self.report(message, span, hint);
                 continue;
             }
             let times: Option<Vec<Time>> = spec.times_s.iter().map(|s| Time::from_s(*s)).collect();
@@ -219,6 +255,22 @@ impl Builder<'_> {
         None
     }
 
+    /// The output at the start is a value of the signal, where the file gives it.
+    fn check_initial_output(&mut self, spec: &ControllerSpec, signal: &SignalSpec) {
+        let field = "initial_output";
+        let value = spec.params.to_value().get(field).and_then(serde_json::Value::as_f64);
+        let Some(value) = value.filter(|_| spec.place.has(field)) else { return };
+        if (signal.min..=signal.max).contains(&value) {
+            return;
+        }
+        let (name, range) = (&signal.name, range(signal));
+        let message = format!("{field} = {value} is outside the range of \"{name}\": {range}");
+        let what = format!("controller \"{}\"", spec.id);
+        let mut problem = refused(&what, &spec.place, Some(field), &message);
+        problem.hint = ratio_hint(signal, value);
+        self.problems.push(problem);
+    }
+
     pub(super) fn controllers(
         &mut self,
         plan: &mut Plan,
@@ -230,10 +282,8 @@ impl Builder<'_> {
             let what = format!("controller \"{}\"", spec.id);
             let controller = spec.params.build(&());
             if let Err(error) = &controller {
-                let span = error
-                    .field()
-                    .map_or_else(|| spec.place.span.clone(), |field| spec.place.of(field));
-                self.report(format!("{what}: {error}"), span, None);
+                let problem = refused(&what, &spec.place, error.field(), &error.to_string());
+                self.problems.push(problem);
             }
             let measured = plan.channels.iter().position(|c| c.name == spec.measures);
             if measured.is_none() {
@@ -241,7 +291,10 @@ impl Builder<'_> {
                     did_you_mean(&spec.measures, plan.channels.iter().map(|c| c.name.as_str()));
                 let message =
                     format!("{what} measures \"{}\", which does not exist", spec.measures);
-                self.report(message, spec.place.span.clone(), hint);
+                let hint = hint.or_else(|| {
+                    Some("a channel is for example \"EDGE.m_flow_kg_s\" or \"NODE.t_k\"".into())
+                });
+                self.report(message, spec.place.of("measures"), hint);
             }
             let acts_on = plan.signals.find(&spec.acts_on);
             match acts_on {
@@ -250,10 +303,13 @@ impl Builder<'_> {
                     let hint = did_you_mean(&spec.acts_on, names);
                     let message =
                         format!("{what} acts on \"{}\", which does not exist", spec.acts_on);
-                    self.report(message, spec.place.span.clone(), hint);
+                    let hint =
+                        hint.or_else(|| Some("`anergy check --signals` lists all signals".into()));
+                    self.report(message, spec.place.of("acts_on"), hint);
                 }
                 Some(signal) => {
-                    self.claim(writers, signal, &plan.signals, &what, spec.place.span.clone());
+                    self.check_initial_output(spec, plan.signals.spec(signal));
+                    self.claim(writers, signal, &plan.signals, &what, spec.place.of("acts_on"));
                 }
             }
             let (Ok(controller), Some(measured), Some(acts_on)) = (controller, measured, acts_on)
@@ -279,34 +335,38 @@ impl Builder<'_> {
     }
 }
 
-/// A command signal for every element with an actuator.
-pub(super) fn edge_signals(
-    model: &Model,
-    network: &Network,
-    signals: &mut SignalTable,
-) -> Vec<Option<SignalId>> {
-    model
-        .edges
-        .iter()
-        .zip(&network.edges)
-        .map(|(spec, edge)| {
-            edge.element.actuator().map(|actuator| {
-                signals.add(SignalSpec {
-                    name: format!("{}.{}", spec.id, actuator.command),
-                    unit: actuator.unit,
-                    initial: actuator.initial_command,
-                    min: actuator.min,
-                    max: actuator.max,
-                })
-            })
-        })
-        .collect()
+/// `0 to 1`, with the unit.
+fn range(signal: &SignalSpec) -> String {
+    let unit = match signal.unit {
+        "" => String::new(),
+        "k" => " K".to_owned(),
+        unit => format!(" {}", unit.replace('_', "/")),
+    };
+    match (signal.min.is_finite(), signal.max.is_finite()) {
+        (true, false) => format!("at least {}{unit}", signal.min),
+        (false, true) => format!("at most {}{unit}", signal.max),
+        _ => format!("{} to {}{unit}", signal.min, signal.max),
+    }
+}
+
+/// A temperature in degC that was read in K.
+fn celsius_hint(signal: &SignalSpec, value: f64) -> Option<String> {
+    let meant = Unit::find("degc").filter(|unit| unit.si == signal.unit)?.to_si(value);
+    (signal.min..=signal.max)
+        .contains(&meant)
+        .then(|| "for values in degC add unit = \"degC\"".to_owned())
+}
+
+/// What to write instead of a ratio in percent.
+fn ratio_hint(signal: &SignalSpec, value: f64) -> Option<String> {
+    in_percent(value).filter(|_| signal.unit.is_empty() && signal.min >= 0.0 && signal.max <= 2.0)
 }
 
 pub(super) fn free_signal(name: &str, unit: &'static str, initial: f64) -> SignalSpec {
     SignalSpec { name: name.to_owned(), unit, initial, min: f64::NEG_INFINITY, max: f64::INFINITY }
 }
 
-pub(super) fn temperature_signal(name: &str, initial: f64) -> SignalSpec {
-    SignalSpec { name: name.to_owned(), unit: "k", initial, min: 173.15, max: 473.15 }
+pub(super) fn temperature_signal(name: &str, initial: f64, range: &Temperatures) -> SignalSpec {
+    let (min, max) = range.range_k();
+    SignalSpec { name: name.to_owned(), unit: "k", initial, min, max }
 }

@@ -58,6 +58,9 @@ impl Duration {
     fn from_s(seconds: f64) -> Result<Self, String> {
         match Time::from_s(seconds) {
             Some(time) if time > Time::ZERO => Ok(Self(time)),
+            None if seconds > 0.0 => Err(format!(
+                "{seconds:.4e} s is too long; time is counted up to 292 years (9.2e9 s)"
+            )),
             _ => Err(format!("a duration must be positive, not {seconds} s")),
         }
     }
@@ -122,6 +125,8 @@ mod tests {
         assert_eq!(s("250ms"), Ok(0.25));
         assert_eq!(s("1d"), Ok(86_400.0));
         assert_eq!(s("0.5"), Ok(0.5));
+        assert!(s("400 y").unwrap_err().contains("too long"));
+        assert!(s("0s").unwrap_err().contains("must be positive"));
         for wrong in ["", "abc", "1x", "-1s", "0s", "1h30", "auto", "1e400"] {
             assert!(s(wrong).is_err(), "{wrong}");
         }

@@ -14,7 +14,7 @@
 //! side (positive flow is feed-in), `extraction_valve` and `stub_cold` towards the hot side.
 
 use super::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
-use crate::document::{Key, Tree, TreeKind};
+use crate::document::{Tree, TreeKind};
 use serde_json::{Value, json};
 use std::ops::Range;
 
@@ -25,6 +25,15 @@ pub(super) struct Plain {
     pub tree: Tree,
     /// Its site (nodes) or station (edges); empty for none.
     pub owner: String,
+    /// What the user wrote where that is a composite, for messages: `trench "a-b"`; empty for others.
+    pub entry: String,
+}
+
+impl Plain {
+    /// The composite, or `otherwise` where the user wrote this entry.
+    pub(super) fn entry_or<'a>(&'a self, otherwise: &'a str) -> &'a str {
+        if self.entry.is_empty() { otherwise } else { &self.entry }
+    }
 }
 
 /// The nodes of a site.
@@ -38,7 +47,11 @@ pub(super) fn site_nodes(site: &SiteEntry, span: Option<&Range<usize>>) -> Vec<P
             ];
             entries.extend(site.x_m.map(|x| ("x_m", json!(x))));
             entries.extend(site.y_m.map(|y| ("y_m", json!(y))));
-            Plain { tree: Tree::table(span.cloned(), entries), owner: site.id.clone() }
+            Plain {
+                tree: Tree::table(span.cloned(), entries),
+                owner: site.id.clone(),
+                entry: format!("site \"{}\"", site.id),
+            }
         })
         .collect()
 }
@@ -63,9 +76,39 @@ pub(super) fn trench_pipes(
                 ],
             );
             tree.fill_from(fields);
-            Plain { tree, owner: String::new() }
+            Plain { tree, owner: String::new(), entry: format!("trench \"{id}\"") }
         })
         .collect()
+}
+
+/// The parts that a station can have, and how each is written.
+pub(super) const PARTS: &[(&str, &str)] = &[
+    ("stub", "{ length_m = 5, inner_diameter_mm = 22 }"),
+    ("heat_exchanger", "{ ua_w_k = 3000 }"),
+    ("feed_in_pump", "{ speed = 1.0 }"),
+    ("feed_in_check_valve", "{ kvs_m3_h = 11 }"),
+    ("extraction_valve", "{ opening = 0.5 }"),
+];
+
+/// The parts of a kind of station.
+pub(super) fn parts_of(kind: StationKind) -> &'static [&'static str] {
+    match kind {
+        StationKind::Bidirectional => {
+            &["stub", "heat_exchanger", "feed_in_pump", "feed_in_check_valve", "extraction_valve"]
+        }
+        StationKind::Consumer => &["stub", "heat_exchanger", "extraction_valve"],
+        StationKind::Producer => &["stub", "heat_exchanger", "feed_in_pump", "feed_in_check_valve"],
+        StationKind::PrescribedFlow => &[],
+    }
+}
+
+/// A station's entry in messages.
+pub(super) fn station_in_words(tree: &Tree) -> String {
+    let site = tree.text("site").unwrap_or("?");
+    match tree.text("name") {
+        Some(name) if name != "station" => format!("station \"{name}\" at \"{site}\""),
+        _ => format!("station at \"{site}\""),
+    }
 }
 
 /// A part of a station: its name, kind, ends and the defaults of the published station.
@@ -88,12 +131,9 @@ pub(super) fn station(
     let inner = |name: &str| format!("{prefix}.{name}");
     let hot = format!("{}.{}", site.id, site.lines[0]);
     let cold = format!("{}.{}", site.id, site.lines[1]);
-    let (feeds_in, extracts) = match station.kind {
-        StationKind::Bidirectional => (true, true),
-        StationKind::Consumer => (false, true),
-        StationKind::Producer => (true, false),
-        StationKind::PrescribedFlow => (false, false),
-    };
+    let has = |part: &str| parts_of(station.kind).contains(&part);
+    let (feeds_in, extracts) = (has("feed_in_pump"), has("extraction_valve"));
+    let what = station_in_words(tree);
     let mut parts = Vec::new();
     let mut inner_nodes = Vec::new();
     if station.kind == StationKind::PrescribedFlow {
@@ -181,11 +221,19 @@ pub(super) fn station(
                 vec![("id", json!(inner(name))), ("elevation_m", json!(site.elevation_m))],
             ),
             owner: site.id.clone(),
+            entry: what.clone(),
         })
         .collect();
     let edges = parts
         .iter()
-        .map(|part| Plain { tree: part.tree(tree, &prefix), owner: id.clone() })
+        .map(|part| Plain {
+            tree: part.tree(tree, &prefix),
+            owner: id.clone(),
+            entry: match part.fields {
+                "" => what.clone(),
+                fields => format!("{what}, {fields}"),
+            },
+        })
         .collect();
     let interface = InterfaceEntry {
         id,
@@ -219,17 +267,9 @@ impl Part {
             ],
         );
         let own = station.get(self.fields);
+        // What is no table has been reported.
         if let Some(own) = own {
-            match own.kind {
-                TreeKind::Table(_) => tree.fill_from(own),
-                // Not a table: let the edge's reader say so at the right place.
-                _ => {
-                    let key = Key { name: self.fields.to_owned(), span: own.span.clone() };
-                    if let TreeKind::Table(entries) = &mut tree.kind {
-                        entries.push((key, own.clone()));
-                    }
-                }
-            }
+            tree.fill_from(own);
         }
         let defaults = Tree::from_json(&self.defaults, station.span.as_ref());
         fill_quantities(&mut tree, &defaults, own.is_some_and(|own| own.get("pipe").is_some()));

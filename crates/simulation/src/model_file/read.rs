@@ -9,9 +9,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::document::{Tree, TreeKind};
 use crate::fields::{Reader, SiTable};
 use crate::model::*;
+use crate::temperatures::{SURROUNDINGS, Temperatures, WATER};
+use crate::wording::refused;
 use anergy_core::medium::Medium;
 use jiff::Timestamp;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// The sections of a model file.
@@ -40,20 +42,18 @@ pub(super) const SECTIONS: &[&str] = &[
 /// # Errors
 /// All problems found.
 pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> {
-    let mut reader = ModelReader { reader: Reader::default(), tree, dir, sites: HashMap::new() };
+    let mut reader = ModelReader {
+        reader: Reader::default(),
+        tree,
+        dir,
+        sites: HashMap::new(),
+        wrong_sites: HashSet::new(),
+    };
     let model = reader.model(text);
-    let mut problems = reader.reader.problems;
-    // One place can be read twice (both pipes of a trench): the first report is enough.
-    let mut seen = Vec::new();
-    problems.retain(|problem| {
-        let key = (problem.span.clone(), problem.hint.clone());
-        let fresh = problem.span.is_none() || !seen.contains(&key);
-        seen.push(key);
-        fresh
-    });
+    let problems = Diagnostics(reader.reader.problems).without_repetition();
     match model {
-        Some(model) if problems.is_empty() => Ok(model),
-        _ => Err(Diagnostics(problems)),
+        Some(model) if problems.0.is_empty() => Ok(model),
+        _ => Err(problems),
     }
 }
 
@@ -62,56 +62,72 @@ struct ModelReader<'a> {
     tree: &'a Tree,
     dir: &'a Path,
     sites: HashMap<String, SiteEntry>,
+    /// Sites that are there, but wrong and reported.
+    wrong_sites: HashSet<String>,
+}
+
+/// The stations of a model file.
+#[derive(Default)]
+struct Stations {
+    /// Edge of the interface, by `site.name`.
+    edges: HashMap<String, String>,
+    /// Those that are there, but wrong and reported.
+    wrong: HashSet<String>,
 }
 
 impl ModelReader<'_> {
     fn model(&mut self, text: &str) -> Option<Model> {
         self.check_sections();
-        let about: Option<ModelEntry> = self.single("model");
-        let run: Option<RunEntry> = self.single("run");
-        let fluid: Option<FluidEntry> = self.single("fluid");
-        let ground: Option<GroundEntry> = self.single("ground");
-        let start = run.as_ref().and_then(|run| self.start(run));
-        self.check_run(run.as_ref(), ground.as_ref());
-        let medium = fluid.as_ref().and_then(|fluid| self.medium(fluid));
+        let about = self.single::<ModelEntry>("model");
+        let run = self.single::<RunEntry>("run");
+        let fluid = self.single::<FluidEntry>("fluid");
+        let ground = self.single::<GroundEntry>("ground");
+        let start = run.as_ref().and_then(|(run, place)| self.start(run, place));
+        if let Some((about, place)) = &about
+            && about.gravity < 0.0
+        {
+            let message = format!("gravity = {} must not be negative", about.gravity);
+            let problem = refused("[model]", place, Some("gravity"), &message);
+            self.reader.report(problem.with_hint("9.81 pulls down: elevations count upwards"));
+        }
+        if let Some((run, place)) = &run {
+            self.check_temperature(&WATER, "initial_k", run.initial_k, place);
+        }
+        if let Some((ground, place)) = &ground {
+            self.check_temperature(&SURROUNDINGS, "temperature_k", ground.temperature_k, place);
+        }
+        let medium = fluid.as_ref().and_then(|(fluid, place)| self.medium(fluid, place));
         let (mut nodes, mut edges) = (Vec::new(), Vec::new());
         let mut interfaces = Vec::new();
-        self.sites(&mut nodes);
+        self.read_sites(&mut nodes);
         self.trenches(&mut edges);
-        self.stations(&mut nodes, &mut edges, &mut interfaces);
-        let plain = |tree: &Tree| Plain { tree: tree.clone(), owner: String::new() };
+        let mut stations = self.stations(&mut nodes, &mut edges, &mut interfaces);
+        let plain =
+            |tree: &Tree| Plain { tree: tree.clone(), owner: String::new(), entry: String::new() };
         nodes.extend(self.items("node").iter().map(plain));
         edges.extend(self.items("edge").iter().map(plain));
         let types = self.pipe_types();
         let nodes = nodes.iter().filter_map(|node| self.node(node)).collect();
         let edges = edges.into_iter().filter_map(|edge| self.edge(edge, &types)).collect();
         for tree in self.items("interface") {
-            if let Some(entry) = self.reader.read::<InterfaceEntry>("interface", &tree) {
-                interfaces.push((entry, tree));
+            let what = format!("interface \"{}\"", tree.text("id").unwrap_or("?"));
+            if let Some((entry, table)) = self.reader.read::<InterfaceEntry>(&what, &tree) {
+                stations.edges.insert(entry.id.clone(), entry.edge.clone());
+                interfaces.push(InterfaceSpec::new(entry, place(&what, &tree, &table)));
             }
         }
         let model = Model {
             text: text.to_owned(),
-            units: self.units(&interfaces),
-            interfaces: interfaces
-                .into_iter()
-                .map(|(entry, tree)| InterfaceSpec {
-                    id: entry.id,
-                    edge: entry.edge,
-                    pump: entry.pump,
-                    valve: entry.valve,
-                    requested_flow_m3_s: entry.requested_flow_m3_s,
-                    place: Place { span: tree.span, fields: Vec::new() },
-                })
-                .collect(),
+            units: self.units(&stations),
+            interfaces,
             controllers: self.controllers(),
             drivers: self.drivers(start),
             references: self.references(),
-            name: about.as_ref()?.name.clone(),
-            gravity_m_s2: about?.gravity,
-            run: run?,
+            name: about.as_ref()?.0.name.clone(),
+            gravity_m_s2: about?.0.gravity,
+            run: run?.0,
             medium: medium?,
-            ground_k: ground?.temperature_k,
+            ground_k: ground?.0.temperature_k,
             nodes,
             edges,
         };
@@ -142,11 +158,16 @@ impl ModelReader<'_> {
         }
     }
 
-    /// A section that occurs once; absent means all defaults.
-    fn single<T: serde::de::DeserializeOwned + JsonSchema>(&mut self, section: &str) -> Option<T> {
+    /// A section that occurs once, and its place; absent means all defaults.
+    fn single<T>(&mut self, section: &str) -> Option<(T, Place)>
+    where
+        T: serde::de::DeserializeOwned + JsonSchema + 'static,
+    {
         let empty = Tree { span: None, kind: TreeKind::Table(Vec::new()) };
         let tree = self.tree.get(section).unwrap_or(&empty);
-        self.reader.read(&format!("[{section}]"), tree)
+        let what = format!("[{section}]");
+        let (entry, table) = self.reader.read(&what, tree)?;
+        Some((entry, place(&what, tree, &table)))
     }
 
     /// The entries of a section that can occur several times.
@@ -169,55 +190,25 @@ impl ModelReader<'_> {
         }
     }
 
-    fn place_of(&self, section: &str, field: &str) -> Option<std::ops::Range<usize>> {
-        self.tree.get(section).and_then(|tree| tree.get(field)).and_then(|tree| tree.span.clone())
-    }
-
-    fn start(&mut self, run: &RunEntry) -> Option<Timestamp> {
+    fn start(&mut self, run: &RunEntry, place: &Place) -> Option<Timestamp> {
         let text = run.start.as_ref()?;
         match text.parse::<Timestamp>() {
             Ok(start) => Some(start),
             Err(_) => {
-                let span = self.place_of("run", "start");
-                self.reader.report(
-                    Diagnostic::new(
-                        format!("[run]: start = \"{text}\" is not a point in time"),
-                        span,
-                    )
-                    .with_hint("write for example \"2024-01-17T00:00:00+01:00\""),
-                );
+                let message = format!("start = \"{text}\" is not a point in time");
+                let problem = refused("[run]", place, Some("start"), &message);
+                let hint = "write for example \"2024-01-17T00:00:00+01:00\"";
+                self.reader.report(problem.with_hint(hint));
                 None
             }
         }
     }
 
-    fn check_run(&mut self, run: Option<&RunEntry>, ground: Option<&GroundEntry>) {
-        if let Some(run) = run {
-            self.check_liquid("run", "initial", run.initial_k);
-        }
-        if let Some(ground) = ground
-            && !(223.15..=373.15).contains(&ground.temperature_k)
-        {
-            let span = self.place_of("ground", "temperature_degc");
-            let message =
-                format!("[ground]: temperature_k = {} K is no ground", ground.temperature_k);
-            self.reader.report(Diagnostic::new(message, span));
-        }
+    fn check_temperature(&mut self, range: &Temperatures, field: &str, t_k: f64, place: &Place) {
+        self.reader.problems.extend(range.problem("", field, t_k, place));
     }
 
-    fn check_liquid(&mut self, section: &str, stem: &str, t_k: f64) {
-        if !(273.15..=373.15).contains(&t_k) {
-            let span = self
-                .place_of(section, &format!("{stem}_degc"))
-                .or_else(|| self.place_of(section, &format!("{stem}_k")));
-            self.reader.report(Diagnostic::new(
-                format!("[{section}]: water of {stem}_k = {t_k} K is not liquid (0 to 100 degC)"),
-                span,
-            ));
-        }
-    }
-
-    fn medium(&mut self, fluid: &FluidEntry) -> Option<Medium> {
+    fn medium(&mut self, fluid: &FluidEntry, place: &Place) -> Option<Medium> {
         let mut good = true;
         for (field, value) in [
             ("density_kg_m3", fluid.density_kg_m3),
@@ -227,11 +218,8 @@ impl ModelReader<'_> {
         ] {
             if value <= 0.0 {
                 good = false;
-                let span = self.place_of("fluid", field);
-                self.reader.report(Diagnostic::new(
-                    format!("[fluid]: {field} = {value} must be positive"),
-                    span,
-                ));
+                let message = format!("{field} = {value} must be positive");
+                self.reader.report(refused("[fluid]", place, Some(field), &message));
             }
         }
         good.then_some(Medium {
@@ -246,7 +234,8 @@ impl ModelReader<'_> {
         let mut drivers = Vec::new();
         for tree in self.items("schedule") {
             let what = format!("schedule of \"{}\"", tree.text("signal").unwrap_or("?"));
-            let Some(entry) = self.reader.read::<ScheduleEntry>(&what, &tree) else { continue };
+            let read = self.reader.read::<ScheduleEntry>(&what, &tree);
+            let Some((entry, table)) = read else { continue };
             let (times_s, values): (Vec<f64>, Vec<f64>) = entry.points.iter().copied().unzip();
             let span = tree.get("points").and_then(|tree| tree.span.clone());
             if times_s.is_empty() {
@@ -269,13 +258,14 @@ impl ModelReader<'_> {
                 interpolation: entry.interpolation,
                 times_s,
                 values,
+                place: place(&what, &tree, &table),
                 source: what,
-                place: fields_place(&tree),
             });
         }
         for tree in self.items("series") {
             let what = format!("series of \"{}\"", tree.text("signal").unwrap_or("?"));
-            let Some(entry) = self.reader.read::<SeriesEntry>(&what, &tree) else { continue };
+            let read = self.reader.read::<SeriesEntry>(&what, &tree);
+            let Some((entry, table)) = read else { continue };
             match series::load(&entry, start, self.dir, &tree) {
                 Err(problem) => self.reader.report(problem),
                 Ok((times_s, values)) => drivers.push(DriverSpec {
@@ -285,7 +275,7 @@ impl ModelReader<'_> {
                     times_s,
                     values,
                     source: format!("{what} ({}, column {})", entry.file, entry.column),
-                    place: fields_place(&tree),
+                    place: place(&what, &tree, &table),
                 }),
             }
         }
@@ -300,20 +290,14 @@ impl ModelReader<'_> {
         items
             .iter()
             .filter_map(|tree| {
-                let entry = self.reader.read("pressure_reference", tree)?;
-                Some(ReferenceSpec { entry, place: fields_place(tree) })
+                let what = "pressure_reference";
+                let (entry, table) = self.reader.read(what, tree)?;
+                Some(ReferenceSpec { entry, place: place(what, tree, &table) })
             })
             .collect()
     }
 }
 
-fn place(tree: &Tree, table: &SiTable) -> Place {
-    let fields = table.places.iter().map(|(si, _, span)| (si.clone(), span.clone())).collect();
-    Place { span: tree.span.clone(), fields }
-}
-
-fn fields_place(tree: &Tree) -> Place {
-    let fields =
-        tree.entries().iter().map(|(key, value)| (key.name.clone(), value.span.clone())).collect();
-    Place { span: tree.span.clone(), fields }
+fn place(what: &str, tree: &Tree, table: &SiTable) -> Place {
+    Place { entry: what.to_owned(), span: tree.span.clone(), fields: table.fields.clone() }
 }

@@ -22,13 +22,25 @@ pub(super) fn load(
 ) -> Result<Column, Diagnostic> {
     let at = |field: &str| tree.get(field).and_then(|tree| tree.span.clone());
     let wrong = |field: &str, message: String| Diagnostic::new(message, at(field));
+    let separator = u8::try_from(entry.separator)
+        .ok()
+        .filter(|byte| {
+            byte.is_ascii() && !byte.is_ascii_alphanumeric() && !b".+-#\"\r\n".contains(byte)
+        })
+        .ok_or_else(|| {
+            let message = format!(
+                "series of \"{}\": separator = {:?} cannot separate numbers",
+                entry.signal, entry.separator
+            );
+            wrong("separator", message).with_hint("usual are \",\", \";\" and \"\\t\"")
+        })?;
     let path = dir.join(&entry.file);
     let file = std::fs::File::open(&path).map_err(|error| {
         wrong("file", format!("series \"{}\": cannot read {}: {error}", entry.signal, entry.file))
             .with_hint("the path is relative to the folder of the model file")
     })?;
     let mut reader = csv::ReaderBuilder::new()
-        .delimiter(entry.separator as u8)
+        .delimiter(separator)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(file);

@@ -1,220 +1,327 @@
 //! Nodes, edges, units and controllers: dispatched on their `kind`.
 
-use super::{ModelReader, place};
+use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Tree, TreeKind};
-use crate::model::{ControllerSpec, EdgeSpec, NodeSpec, UnitSpec};
+use crate::grammar::{Grammar, Registered};
+use crate::model::{ControllerSpec, EdgeSpec, NodeSpec, Place, UnitSpec, WrittenField};
 use crate::model_file::expand::Plain;
-use crate::model_file::{InterfaceEntry, NodeEntry, NodeEntryKind};
+use crate::model_file::{NodeEntry, NodeEntryKind};
+use crate::wording::refused;
 use anergy_control::controllers::ControllerParams;
+use anergy_core::medium::Medium;
 use anergy_network::elements::{ElementParams, pipe::PipeParams};
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
 use std::collections::HashMap;
 
+/// The pipe types by name; `None` for those that are reported as wrong already.
+pub(super) type PipeTypes = HashMap<String, Option<Tree>>;
+
+/// An entry whose kind is not known yet: its words are taken out one by one.
+pub(super) struct Words {
+    /// The entry in messages.
+    pub what: String,
+    /// What is left of it.
+    pub tree: Tree,
+    /// What was taken out.
+    taken: Vec<WrittenField>,
+    /// What it was asked for.
+    asked: Vec<&'static str>,
+}
+
+impl Words {
+    pub(super) fn new(what: impl Into<String>, tree: Tree) -> Self {
+        Self { what: what.into(), tree, taken: Vec::new(), asked: Vec::new() }
+    }
+}
+
 impl ModelReader<'_> {
     pub(super) fn node(&mut self, plain: &Plain) -> Option<NodeSpec> {
         let what = format!("node \"{}\"", plain.tree.text("id").unwrap_or("?"));
-        let schema = schemars::schema_for!(NodeEntry);
-        let (entry, table) =
-            self.reader.read_with::<NodeEntry>(&what, &plain.tree, &schema, |value| {
-                serde_path_to_error::deserialize(value)
-            })?;
-        let needs = match entry.kind {
-            NodeEntryKind::Junction => None,
-            NodeEntryKind::PressureBoundary => entry.pressure_pa.is_none().then_some("pressure_pa"),
-            NodeEntryKind::Source => entry.m_flow_kg_s.is_none().then_some("m_flow_kg_s"),
+        let (entry, table) = self.reader.read::<NodeEntry>(&what, &plain.tree)?;
+        let place = place(plain.entry_or(&what), &plain.tree, &table);
+        let word = match entry.kind {
+            NodeEntryKind::Junction => "junction",
+            NodeEntryKind::PressureBoundary => "pressure_boundary",
+            NodeEntryKind::Source => "source",
         };
-        if let Some(field) = needs {
-            self.reader.report(Diagnostic::new(
-                format!("{what}: {field} is missing"),
-                plain.tree.span.clone(),
-            ));
+        // Field, whether it is given, the kinds that have it, whether those need it.
+        let fields = [
+            ("pressure_pa", entry.pressure_pa.is_some(), &["pressure_boundary"][..], true),
+            ("m_flow_kg_s", entry.m_flow_kg_s.is_some(), &["source"][..], true),
+            (
+                "temperature_k",
+                entry.temperature_k.is_some(),
+                &["pressure_boundary", "source"][..],
+                false,
+            ),
+        ];
+        for (field, given, kinds, needed) in fields {
+            let has = kinds.contains(&word);
+            if has && needed && !given {
+                self.reader.report_missing(&what, field, plain.tree.span.clone());
+            } else if given && !has {
+                let mut hint = format!("it belongs to kind = \"{}\"", kinds.join("\" or \""));
+                if field == "pressure_pa" && word == "junction" {
+                    hint.push_str(", or to a [[pressure_reference]] that names the node");
+                }
+                let message = format!("{field} has no effect at a {word}");
+                let problem = refused(&what, &place, Some(field), &message);
+                self.reader.report(problem.with_hint(hint));
+            }
         }
         if entry.volume_m3 < 0.0 {
-            self.reader.report(Diagnostic::new(
-                format!("{what}: volume_m3 = {} must not be negative", entry.volume_m3),
-                table.place("volume_m3"),
-            ));
+            let message = format!("volume_m3 = {} must not be negative", entry.volume_m3);
+            self.reader.report(refused(&what, &place, Some("volume_m3"), &message));
         }
-        Some(NodeSpec { entry, site: plain.owner.clone(), place: place(&plain.tree, &table) })
+        Some(NodeSpec { entry, site: plain.owner.clone(), place })
     }
 
-    pub(super) fn edge(&mut self, plain: Plain, types: &HashMap<String, Tree>) -> Option<EdgeSpec> {
-        let mut tree = plain.tree;
-        let id = self.required_text("edge", &mut tree, "id")?;
-        let what = format!("edge \"{id}\"");
-        let from = self.required_text(&what, &mut tree, "from");
-        let to = self.required_text(&what, &mut tree, "to");
-        let kind = self.kind(&what, &mut tree, ElementParams::KINDS)?;
+    pub(super) fn edge(&mut self, plain: Plain, types: &PipeTypes) -> Option<EdgeSpec> {
+        let mut words = Words::new(plain.entry_or("edge").to_owned(), plain.tree);
+        let id = self.required_text(&mut words, "id")?;
+        let composite = !plain.entry.is_empty();
+        if !composite {
+            words.what = format!("edge \"{id}\"");
+        }
+        let from = self.required_text(&mut words, "from");
+        let to = self.required_text(&mut words, "to");
+        let kind = self.kind::<ElementParams>(&mut words)?;
         if kind == "pipe" {
-            self.merge_pipe_type(&what, &mut tree, types)?;
+            self.merge_pipe_type(&mut words, types)?;
         }
-        let schema = ElementParams::schema(&kind)?;
-        let (params, table) =
-            self.reader.read_with(&format!("{what} ({kind})"), &tree, &schema, |value| {
-                let mut track = serde_path_to_error::Track::new();
-                let deserializer = serde_path_to_error::Deserializer::new(value, &mut track);
-                let result = ElementParams::deserialize(&kind, deserializer);
-                finish(result, track)
-            })?;
-        Some(EdgeSpec {
-            id,
-            from: from?,
-            to: to?,
-            params,
-            loss_factor: 1.0,
-            station: plain.owner,
-            place: place(&tree, &table),
-        })
+        if composite {
+            // The program has written these words, so the user need not know them.
+            words.asked.clear();
+        } else {
+            words.what = format!("edge \"{id}\" ({kind})");
+        }
+        let (params, place) = self.parameters(words, &kind)?;
+        let (from, to) = (from?, to?);
+        Some(EdgeSpec { id, from, to, params, loss_factor: 1.0, station: plain.owner, place })
     }
 
-    pub(super) fn merge_pipe_type(
-        &mut self,
-        what: &str,
-        tree: &mut Tree,
-        types: &HashMap<String, Tree>,
-    ) -> Option<()> {
-        let Some((_, name)) = tree.take("pipe") else { return Some(()) };
+    fn merge_pipe_type(&mut self, words: &mut Words, types: &PipeTypes) -> Option<()> {
+        words.asked.push("pipe");
+        let Some((_, name)) = words.tree.take("pipe") else { return Some(()) };
+        let what = &words.what;
         let TreeKind::Scalar(Value::String(type_name)) = &name.kind else {
-            self.reader.report(Diagnostic::new(
-                format!("{what}: pipe must be the name of a pipe_type"),
-                name.span,
-            ));
+            self.reader.report(
+                Diagnostic::new(
+                    format!(
+                        "{what}: pipe must be the name of a pipe_type, not {}",
+                        name.type_name()
+                    ),
+                    name.span,
+                )
+                .with_hint("write for example pipe = \"dn20\", with a section [pipe_type.dn20]"),
+            );
             return None;
         };
         let Some(defaults) = types.get(type_name) else {
-            let mut problem = Diagnostic::new(
-                format!("{what}: there is no pipe_type \"{type_name}\""),
-                name.span,
+            let hint = did_you_mean(type_name, types.keys().map(String::as_str))
+                .unwrap_or_else(|| format!("add a section [pipe_type.{type_name}]"));
+            self.reader.report(
+                Diagnostic::new(
+                    format!("{what}: there is no pipe_type \"{type_name}\""),
+                    name.span.clone(),
+                )
+                .with_hint(hint),
             );
-            if let Some(hint) = did_you_mean(type_name, types.keys().map(String::as_str)) {
-                problem = problem.with_hint(hint);
-            }
-            self.reader.report(problem);
             return None;
         };
+        let defaults = defaults.as_ref()?;
         // A quantity of the entry wins over the same quantity of the type, whatever its unit.
         let stem = |name: &str| {
             anergy_core::units::split_suffix(name).map_or(name.to_owned(), |(stem, _)| stem.into())
         };
-        let own: Vec<String> = tree.entries().iter().map(|(key, _)| stem(&key.name)).collect();
+        let own: Vec<String> =
+            words.tree.entries().iter().map(|(key, _)| stem(&key.name)).collect();
         let mut rest = defaults.clone();
         if let TreeKind::Table(entries) = &mut rest.kind {
             entries.retain(|(key, _)| !own.contains(&stem(&key.name)));
         }
-        tree.fill_from(&rest);
+        words.tree.fill_from(&rest);
         Some(())
     }
 
-    pub(super) fn pipe_types(&mut self) -> HashMap<String, Tree> {
-        let Some(tree) = self.tree.get("pipe_type") else { return HashMap::new() };
-        let mut types = HashMap::new();
-        let mut schema = schemars::schema_for!(PipeParams);
-        schema.remove("required");
+    /// The pipe types; what is wrong with one is reported here and not where it is used.
+    pub(super) fn pipe_types(&mut self) -> PipeTypes {
+        let Some(tree) = self.tree.get("pipe_type") else { return PipeTypes::new() };
+        if !matches!(tree.kind, TreeKind::Table(_)) {
+            let message =
+                format!("pipe_type must be a table of named types, not {}", tree.type_name());
+            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(
+                "write [pipe_type.dn20] with its fields, and pipe = \"dn20\" to use it",
+            ));
+            // The types are there, only not by name.
+            return self.pipe_types_named_anywhere();
+        }
+        let whole = Grammar::of::<PipeParams>();
+        let grammar = Grammar { fields: whole.fields.clone(), required: Vec::new() };
+        let mut types = PipeTypes::new();
         for (key, fields) in tree.entries() {
             let what = format!("pipe_type \"{}\"", key.name);
-            // Only names and units: values are checked where the type is used.
-            self.reader.read_with(&what, fields, &schema, |_| Ok(()));
-            types.insert(key.name.clone(), fields.clone());
+            let before = self.reader.problems.len();
+            let read = self.reader.read_with(&what, fields, &grammar, &[], |mut value| {
+                // The entry that uses the type gives the rest; here it is a wide pipe of 1 m.
+                if let Value::Object(values) = &mut value {
+                    for name in &whole.required {
+                        values.entry(name.clone()).or_insert(Value::from(1.0));
+                    }
+                }
+                serde_path_to_error::deserialize::<_, PipeParams>(value)
+            });
+            if let Some((params, table)) = read {
+                let place = place(&what, fields, &table);
+                if let Err(error) = params.build(&Medium::default()) {
+                    self.reader.report(refused(&what, &place, error.field(), &error.to_string()));
+                }
+                self.reader
+                    .problems
+                    .extend(crate::build::pipe_temperatures(&what, &params, &place));
+            }
+            let sound = self.reader.problems.len() == before;
+            types.insert(key.name.clone(), sound.then(|| fields.clone()));
         }
         types
     }
 
-    pub(super) fn units(&mut self, interfaces: &[(InterfaceEntry, Tree)]) -> Vec<UnitSpec> {
-        let mut units = Vec::new();
-        for mut tree in self.items("unit") {
-            let span = tree.span.clone();
-            let site = self.optional_text("unit", &mut tree, "site");
-            let (id, port) = if let Some(site) = site {
-                let name =
-                    self.optional_text("unit", &mut tree, "name").unwrap_or_else(|| "unit".into());
-                let station = self
-                    .optional_text("unit", &mut tree, "station")
-                    .unwrap_or_else(|| "station".into());
-                let wanted = format!("{site}.{station}");
-                let Some((interface, _)) =
-                    interfaces.iter().find(|(interface, _)| interface.id == wanted)
-                else {
-                    self.reader.report(
-                        Diagnostic::new(format!("unit: there is no station \"{wanted}\""), span)
-                            .with_hint("add a [[station]] at that site, or name it with `station`"),
-                    );
-                    continue;
-                };
-                (format!("{site}.{name}"), interface.edge.clone())
-            } else {
-                let id = self.required_text("unit", &mut tree, "id");
-                let port = self.required_text("unit", &mut tree, "port");
-                let (Some(id), Some(port)) = (id, port) else { continue };
-                (id, port)
-            };
-            let what = format!("unit \"{id}\"");
-            let Some(kind) = self.kind(&what, &mut tree, EquipmentParams::KINDS) else { continue };
-            let Some(schema) = EquipmentParams::schema(&kind) else { continue };
-            let read =
-                self.reader.read_with(&format!("{what} ({kind})"), &tree, &schema, |value| {
-                    let mut track = serde_path_to_error::Track::new();
-                    let deserializer = serde_path_to_error::Deserializer::new(value, &mut track);
-                    let result = EquipmentParams::deserialize(&kind, deserializer);
-                    finish(result, track)
-                });
-            if let Some((params, table)) = read {
-                units.push(UnitSpec { id, port, params, place: place(&tree, &table) });
+    /// All names of pipe types that entries use, as reported.
+    fn pipe_types_named_anywhere(&self) -> PipeTypes {
+        fn names(tree: &Tree, found: &mut PipeTypes) {
+            if let Some(name) = tree.text("pipe") {
+                found.insert(name.to_owned(), None);
+            }
+            tree.entries().iter().for_each(|(_, value)| names(value, found));
+            if let TreeKind::Array(items) = &tree.kind {
+                items.iter().for_each(|item| names(item, found));
             }
         }
-        units
+        let mut found = PipeTypes::new();
+        names(self.tree, &mut found);
+        found
+    }
+
+    pub(super) fn units(&mut self, stations: &Stations) -> Vec<UnitSpec> {
+        let items = self.items("unit");
+        items.into_iter().filter_map(|tree| self.unit(tree, stations)).collect()
+    }
+
+    fn unit(&mut self, tree: Tree, stations: &Stations) -> Option<UnitSpec> {
+        let mut words = Words::new("unit", tree);
+        let given = |name: &str| words.tree.get(name).is_some();
+        let nowhere = !given("site") && !given("id") && !given("port");
+        let of_site = given("site");
+        if nowhere {
+            let hint = "write site = \"...\" to stand behind the station of a site, or id and port \
+                        (a heat_exchanger or flow_source) to stand on an edge";
+            let problem =
+                Diagnostic::new("unit: it is not said where it stands", words.tree.span.clone());
+            self.reader.report(problem.with_hint(hint));
+            return None;
+        }
+        if let Some(field) = ["id", "port"].into_iter().find(|field| of_site && given(field)) {
+            let span = words.tree.get(field).and_then(|tree| tree.span.clone());
+            let problem = Diagnostic::new(format!("unit: site and {field} are both given"), span);
+            let hint = "a unit of a site is told from others by `name`; id and port are for a unit \
+                        that stands on an edge";
+            self.reader.report(problem.with_hint(hint));
+            return None;
+        }
+        let (id, port) = if of_site {
+            let site = self.required_text(&mut words, "site")?;
+            let name = self.text_or(&mut words, "name", "unit");
+            let station = self.text_or(&mut words, "station", "station");
+            let wanted = format!("{site}.{station}");
+            let Some(edge) = stations.edges.get(&wanted) else {
+                // Its station may be there, and wrong.
+                if !stations.wrong.contains(&wanted) {
+                    let message = format!("unit: there is no station \"{wanted}\"");
+                    let field = if station == "station" { "site" } else { "station" };
+                    let place = words.taken.iter().find(|taken| taken.si == field);
+                    let span = place.map_or(words.tree.span.clone(), |taken| taken.span.clone());
+                    let hint = "add a [[station]] at that site, or name it with `station`";
+                    self.reader.report(Diagnostic::new(message, span).with_hint(hint));
+                }
+                return None;
+            };
+            (format!("{site}.{name}"), edge.clone())
+        } else {
+            let id = self.required_text(&mut words, "id");
+            let port = self.required_text(&mut words, "port");
+            (id?, port?)
+        };
+        words.what = format!("unit \"{id}\"");
+        let kind = self.kind::<EquipmentParams>(&mut words)?;
+        words.what = format!("unit \"{id}\" ({kind})");
+        let (params, place) = self.parameters(words, &kind)?;
+        Some(UnitSpec { id, port, params, place })
     }
 
     pub(super) fn controllers(&mut self) -> Vec<ControllerSpec> {
-        let mut controllers = Vec::new();
-        for mut tree in self.items("controller") {
-            let measures = self.required_text("controller", &mut tree, "measures");
-            let acts_on = self.required_text("controller", &mut tree, "acts_on");
-            let given = self.optional_text("controller", &mut tree, "id");
-            let id = given
-                .unwrap_or_else(|| format!("{}.controller", acts_on.as_deref().unwrap_or("?")));
-            let what = format!("controller \"{id}\"");
-            let Some(kind) = self.kind(&what, &mut tree, ControllerParams::KINDS) else { continue };
-            let Some(schema) = ControllerParams::schema(&kind) else { continue };
-            let read =
-                self.reader.read_with(&format!("{what} ({kind})"), &tree, &schema, |value| {
-                    let mut track = serde_path_to_error::Track::new();
-                    let deserializer = serde_path_to_error::Deserializer::new(value, &mut track);
-                    let result = ControllerParams::deserialize(&kind, deserializer);
-                    finish(result, track)
-                });
-            if let (Some((params, table)), Some(measures), Some(acts_on)) =
-                (read, measures, acts_on)
-            {
-                let place = place(&tree, &table);
-                controllers.push(ControllerSpec { id, measures, acts_on, params, place });
-            }
-        }
-        controllers
+        let items = self.items("controller");
+        items.into_iter().filter_map(|tree| self.controller(tree)).collect()
     }
 
-    pub(super) fn kind(&mut self, what: &str, tree: &mut Tree, kinds: &[&str]) -> Option<String> {
-        let span = tree.get("kind").and_then(|tree| tree.span.clone());
-        let kind = self.required_text(what, tree, "kind")?;
-        if kinds.contains(&kind.as_str()) {
+    fn controller(&mut self, tree: Tree) -> Option<ControllerSpec> {
+        let mut words = Words::new("controller", tree);
+        let measures = self.required_text(&mut words, "measures");
+        let acts_on = self.required_text(&mut words, "acts_on");
+        let id = self.optional_text(&mut words, "id");
+        let id = id.unwrap_or_else(|| format!("{}.controller", acts_on.as_deref().unwrap_or("?")));
+        words.what = format!("controller \"{id}\"");
+        let kind = self.kind::<ControllerParams>(&mut words)?;
+        words.what = format!("controller \"{id}\" ({kind})");
+        let (params, place) = self.parameters(words, &kind)?;
+        Some(ControllerSpec { id, measures: measures?, acts_on: acts_on?, params, place })
+    }
+
+    /// What remains of an entry, as the parameters of its kind.
+    fn parameters<P: Registered>(&mut self, words: Words, kind: &str) -> Option<(P, Place)> {
+        let Words { what, tree, taken, asked } = words;
+        let (params, table) = self.reader.read_kind::<P>(&what, &tree, kind, &asked)?;
+        let mut place = place(&what, &tree, &table);
+        place.fields.extend(taken);
+        Some((params, place))
+    }
+
+    fn kind<P: Registered>(&mut self, words: &mut Words) -> Option<String> {
+        let span = words.tree.get("kind").and_then(|tree| tree.span.clone());
+        let possible = format!("possible kinds: {}", P::KINDS.join(", "));
+        if words.tree.get("kind").is_none() {
+            let message = format!("{}: kind is missing", words.what);
+            let problem = Diagnostic::new(message, words.tree.span.clone());
+            self.reader.report(problem.with_hint(possible));
+            return None;
+        }
+        let kind = self.required_text(words, "kind")?;
+        if P::KINDS.contains(&kind.as_str()) {
             return Some(kind);
         }
-        let hint = did_you_mean(&kind, kinds.iter().copied())
-            .unwrap_or_else(|| format!("known kinds: {}", kinds.join(", ")));
-        self.reader.report(
-            Diagnostic::new(format!("{what}: unknown kind \"{kind}\""), span).with_hint(hint),
-        );
+        let guess = did_you_mean(&kind, P::KINDS.iter().copied());
+        let hint = guess.map_or(possible.clone(), |guess| format!("{guess} {possible}"));
+        let message = format!("{}: unknown kind \"{kind}\"", words.what);
+        self.reader.report(Diagnostic::new(message, span).with_hint(hint));
         None
     }
 
     pub(super) fn optional_text(
         &mut self,
-        what: &str,
-        tree: &mut Tree,
-        field: &str,
+        words: &mut Words,
+        field: &'static str,
     ) -> Option<String> {
-        let (_, value) = tree.take(field)?;
+        words.asked.push(field);
+        let (_, value) = words.tree.take(field)?;
+        words.taken.push(WrittenField {
+            si: field.to_owned(),
+            name: field.to_owned(),
+            value: value.to_json(),
+            si_value: value.to_json(),
+            span: value.span.clone(),
+        });
+        let what = &words.what;
         match value.kind {
             TreeKind::Scalar(Value::String(text)) if !text.is_empty() => Some(text),
             _ => {
@@ -228,27 +335,21 @@ impl ModelReader<'_> {
         }
     }
 
+    fn text_or(&mut self, words: &mut Words, field: &'static str, otherwise: &str) -> String {
+        self.optional_text(words, field).unwrap_or_else(|| otherwise.to_owned())
+    }
+
     pub(super) fn required_text(
         &mut self,
-        what: &str,
-        tree: &mut Tree,
-        field: &str,
+        words: &mut Words,
+        field: &'static str,
     ) -> Option<String> {
-        if tree.get(field).is_none() {
-            self.reader
-                .report(Diagnostic::new(format!("{what}: {field} is missing"), tree.span.clone()));
+        if words.tree.get(field).is_none() {
+            words.asked.push(field);
+            let message = format!("{}: {field} is missing", words.what);
+            self.reader.report(Diagnostic::new(message, words.tree.span.clone()));
             return None;
         }
-        self.optional_text(what, tree, field)
+        self.optional_text(words, field)
     }
-}
-
-/// The result of a deserialisation with the path of the failing field.
-fn finish<T>(
-    result: Option<Result<T, serde_json::Error>>,
-    track: serde_path_to_error::Track,
-) -> Result<T, serde_path_to_error::Error<serde_json::Error>> {
-    let result = result
-        .unwrap_or_else(|| Err(<serde_json::Error as serde::de::Error>::custom("unknown kind")));
-    result.map_err(|error| serde_path_to_error::Error::new(track.path(), error))
 }

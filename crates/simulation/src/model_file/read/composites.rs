@@ -1,25 +1,49 @@
 //! Sites, trenches and stations.
 
-use super::ModelReader;
+use super::components::Words;
+use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::Tree;
+use crate::document::{Tree, TreeKind};
+use crate::model::InterfaceSpec;
 use crate::model_file::expand::{self, Plain};
-use crate::model_file::{InterfaceEntry, SiteEntry, StationEntry};
+use crate::model_file::{SiteEntry, StationEntry};
+use std::collections::HashSet;
 
 impl ModelReader<'_> {
-    pub(super) fn sites(&mut self, nodes: &mut Vec<Plain>) {
+    pub(super) fn read_sites(&mut self, nodes: &mut Vec<Plain>) {
         for tree in self.items("site") {
-            let Some(site) = self.reader.read::<SiteEntry>("site", &tree) else { continue };
+            let what = format!("site \"{}\"", tree.text("id").unwrap_or("?"));
+            let site = self.reader.read::<SiteEntry>(&what, &tree);
+            let Some((site, _)) = site else {
+                self.wrong_sites.extend(tree.text("id").map(str::to_owned));
+                continue;
+            };
+            let at = |field: &str| tree.get(field).and_then(|tree| tree.span.clone());
+            let mut wrong = |message: String, field: &str, hint: &str| {
+                self.reader.report(Diagnostic::new(message, at(field)).with_hint(hint));
+            };
+            if site.id.is_empty() {
+                wrong("site: id is empty".into(), "id", "give it a name");
+                continue;
+            }
             if site.lines.is_empty() {
-                let span = tree.get("lines").and_then(|tree| tree.span.clone());
-                self.reader
-                    .report(Diagnostic::new(format!("site \"{}\" has no lines", site.id), span));
+                wrong(
+                    format!("{what} has no lines"),
+                    "lines",
+                    "the default is [\"hot\", \"cold\"]",
+                );
+                self.wrong_sites.insert(site.id);
+                continue;
+            }
+            let mut seen = HashSet::new();
+            if let Some(line) = site.lines.iter().find(|line| !seen.insert(line.as_str())) {
+                let message = format!("{what} has the line \"{line}\" twice");
+                wrong(message, "lines", "a line is a node of the site: each needs its own name");
+                self.wrong_sites.insert(site.id);
                 continue;
             }
             if self.sites.contains_key(&site.id) {
-                let span = tree.get("id").and_then(|tree| tree.span.clone());
-                self.reader
-                    .report(Diagnostic::new(format!("site \"{}\" exists twice", site.id), span));
+                wrong(format!("{what} exists twice"), "id", "give one of them another id");
                 continue;
             }
             nodes.extend(expand::site_nodes(&site, tree.span.as_ref()));
@@ -28,47 +52,72 @@ impl ModelReader<'_> {
     }
 
     /// The site that a field of an entry names.
-    pub(super) fn site(&mut self, what: &str, tree: &Tree, field: &str) -> Option<SiteEntry> {
+    fn site(&mut self, what: &str, tree: &Tree, field: &str) -> Option<SiteEntry> {
         let name = tree.text(field)?;
         let found = self.sites.get(name).cloned();
-        if found.is_none() {
+        if found.is_none() && !self.wrong_sites.contains(name) {
             let span = tree.get(field).and_then(|tree| tree.span.clone());
-            let mut problem = Diagnostic::new(format!("{what}: there is no site \"{name}\""), span);
-            if let Some(hint) = did_you_mean(name, self.sites.keys().map(String::as_str)) {
-                problem = problem.with_hint(hint);
-            }
-            self.reader.report(problem);
+            let problem = Diagnostic::new(format!("{what}: there is no site \"{name}\""), span);
+            let hint = did_you_mean(name, self.sites.keys().map(String::as_str))
+                .unwrap_or_else(|| format!("add a [[site]] with id = \"{name}\""));
+            self.reader.report(problem.with_hint(hint));
         }
         found
     }
 
     pub(super) fn trenches(&mut self, edges: &mut Vec<Plain>) {
+        let mut known = HashSet::new();
         for tree in self.items("trench") {
-            let mut fields = tree.clone();
-            let id = self.optional_text("trench", &mut fields, "id");
-            let ends = (tree.text("from").is_some(), tree.text("to").is_some());
-            for (field, given) in [("from", ends.0), ("to", ends.1)] {
-                if !given {
+            let mut words = Words::new("trench", tree.clone());
+            let mut ends = [None, None];
+            for (field, end) in ["from", "to"].into_iter().zip(&mut ends) {
+                if tree.get(field).is_some() {
+                    *end = self.optional_text(&mut words, field);
+                } else {
                     self.reader.report(
                         Diagnostic::new(format!("trench: {field} is missing"), tree.span.clone())
                             .with_hint("name the sites at its two ends"),
                     );
                 }
             }
-            let (from, to) = (self.site("trench", &tree, "from"), self.site("trench", &tree, "to"));
+            let given = self.optional_text(&mut words, "id");
+            let ([Some(from), Some(to)], mut fields) = (ends, words.tree) else { continue };
+            let id = given.unwrap_or_else(|| format!("{from}-{to}"));
+            let what = format!("trench \"{id}\"");
+            let (from, to) = (self.site(&what, &tree, "from"), self.site(&what, &tree, "to"));
             let (Some(from), Some(to)) = (from, to) else { continue };
-            fields.take("from");
-            fields.take("to");
-            let id = id.unwrap_or_else(|| format!("{}-{}", from.id, to.id));
+            let at = |field: &str| {
+                let field = tree.get(field).and_then(|tree| tree.span.clone());
+                field.or_else(|| tree.span.clone())
+            };
+            let mut wrong = |message: String, field: &str, hint: &str| {
+                self.reader.report(Diagnostic::new(message, at(field)).with_hint(hint));
+            };
+            if from.id == to.id {
+                let message = format!("{what} begins and ends at \"{}\"", from.id);
+                wrong(message, "to", "a trench joins two sites");
+                continue;
+            }
+            if !known.insert(id.clone()) {
+                wrong(format!("{what} exists twice"), "id", "give one of them another id");
+                continue;
+            }
+            if let Some((key, _)) = fields.take("kind") {
+                let problem =
+                    Diagnostic::new(format!("{what}: unknown field `kind`"), key.span.clone());
+                self.reader.report(problem.with_hint("a trench is always of pipes"));
+                continue;
+            }
             let pipes = expand::trench_pipes(&id, (&from, &to), &fields);
             if pipes.is_empty() {
-                self.reader.report(Diagnostic::new(
-                    format!(
-                        "trench \"{id}\": sites \"{}\" and \"{}\" share no line",
-                        from.id, to.id
-                    ),
-                    tree.span.clone(),
-                ));
+                let message =
+                    format!("{what}: sites \"{}\" and \"{}\" share no line", from.id, to.id);
+                let hint = format!(
+                    "their lines are {} and {}",
+                    from.lines.join(", "),
+                    to.lines.join(", ")
+                );
+                wrong(message, "", &hint);
             }
             edges.extend(pipes);
         }
@@ -78,23 +127,86 @@ impl ModelReader<'_> {
         &mut self,
         nodes: &mut Vec<Plain>,
         edges: &mut Vec<Plain>,
-        interfaces: &mut Vec<(InterfaceEntry, Tree)>,
-    ) {
+        interfaces: &mut Vec<InterfaceSpec>,
+    ) -> Stations {
+        let mut stations = Stations::default();
         for tree in self.items("station") {
-            let what = format!("station at \"{}\"", tree.text("site").unwrap_or("?"));
-            let Some(entry) = self.reader.read::<StationEntry>(&what, &tree) else { continue };
-            let Some(site) = self.site(&what, &tree, "site") else { continue };
-            if site.lines.len() < 2 {
-                self.reader.report(Diagnostic::new(
-                    format!("{what}: a station needs a site with two lines"),
-                    tree.span.clone(),
-                ));
-                continue;
+            let (site, name) = (tree.text("site"), tree.text("name").unwrap_or("station"));
+            let id = format!("{}.{name}", site.unwrap_or("?"));
+            if self.station(&tree, &mut stations, nodes, edges, interfaces).is_none() {
+                stations.wrong.insert(id);
             }
-            let (more_nodes, more_edges, interface) = expand::station(&entry, &site, &tree);
-            nodes.extend(more_nodes);
-            edges.extend(more_edges);
-            interfaces.push((interface, tree));
         }
+        stations
+    }
+
+    /// Expands a station; `None` after a report.
+    fn station(
+        &mut self,
+        tree: &Tree,
+        stations: &mut Stations,
+        nodes: &mut Vec<Plain>,
+        edges: &mut Vec<Plain>,
+        interfaces: &mut Vec<InterfaceSpec>,
+    ) -> Option<()> {
+        let what = expand::station_in_words(tree);
+        let (entry, table) = self.reader.read::<StationEntry>(&what, tree)?;
+        let site = self.site(&what, tree, "site")?;
+        if site.lines.len() < 2 {
+            let message = format!("{what}: a station needs a site with two lines");
+            let hint = format!("site \"{}\" has only {}", site.id, site.lines.join(", "));
+            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(hint));
+            return None;
+        }
+        self.check_parts(&what, &entry, tree)?;
+        let place = place(&what, tree, &table);
+        let (more_nodes, more_edges, interface) = expand::station(&entry, &site, tree);
+        if stations.edges.insert(interface.id.clone(), interface.edge.clone()).is_some() {
+            let problem = Diagnostic::new(format!("{what} exists twice"), tree.span.clone());
+            self.reader.report(problem.with_hint("give one of them a `name`"));
+            return Some(());
+        }
+        nodes.extend(more_nodes);
+        edges.extend(more_edges);
+        interfaces.push(InterfaceSpec::new(interface, place));
+        Some(())
+    }
+
+    /// Every part is a table, and one that the kind of station has.
+    fn check_parts(&mut self, what: &str, entry: &StationEntry, tree: &Tree) -> Option<()> {
+        let before = self.reader.problems.len();
+        let (all, own) = (expand::PARTS, expand::parts_of(entry.kind));
+        for (part, example) in all {
+            let Some((key, value)) = tree.entries().iter().find(|(key, _)| key.name == *part)
+            else {
+                continue;
+            };
+            let kind = tree.text("kind").unwrap_or_default();
+            if !own.contains(part) {
+                let hint = if own.is_empty() {
+                    format!("a {kind} has no parts: its flow is what its unit asks for")
+                } else {
+                    format!("the parts of a {kind} are {}", own.join(", "))
+                };
+                let message = format!("{what}: a {kind} has no {part}");
+                self.reader.report(Diagnostic::new(message, key.span.clone()).with_hint(hint));
+            } else if !matches!(value.kind, TreeKind::Table(_)) {
+                let message = format!("{what}: {part} must be a table, not {}", value.type_name());
+                let hint = match (*part, tree.text(part)) {
+                    ("stub", Some(name)) => format!("write stub = {{ pipe = \"{name}\" }}"),
+                    _ => format!("write for example {part} = {example}"),
+                };
+                self.reader.report(Diagnostic::new(message, value.span.clone()).with_hint(hint));
+            }
+            for (key, _) in value.entries() {
+                if ["id", "kind", "from", "to"].contains(&key.name.as_str()) {
+                    let message = format!("{what}, {part}: unknown field `{}`", key.name);
+                    let hint = "the station says what its parts are and what they join";
+                    let problem = Diagnostic::new(message, key.span.clone());
+                    self.reader.report(problem.with_hint(hint));
+                }
+            }
+        }
+        (self.reader.problems.len() == before).then_some(())
     }
 }
