@@ -4,7 +4,6 @@ use crate::diagnostic::Diagnostic;
 use crate::model::Place;
 use crate::wording::refused;
 use anergy_core::medium::ZERO_CELSIUS_K;
-use serde_json::Value;
 
 /// A range of temperatures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +27,9 @@ pub(crate) const SURROUNDINGS: Temperatures =
 impl Temperatures {
     /// Smallest and largest value, K.
     pub(crate) fn range_k(&self) -> (f64, f64) {
-        (self.low_degc + ZERO_CELSIUS_K, self.high_degc + ZERO_CELSIUS_K)
+        // To hundredths, so that the limits are the numbers that people write.
+        let k = |degc: f64| ((degc + ZERO_CELSIUS_K) * 100.0).round() / 100.0;
+        (k(self.low_degc), k(self.high_degc))
     }
 
     /// The problem of a temperature outside the range. `what` names an entry that is in no file.
@@ -55,7 +56,7 @@ impl Temperatures {
             let celsius = written.name.ends_with("_degc");
             let other_k = if celsius { value } else { value + ZERO_CELSIUS_K };
             let (other, unit) = if celsius { ("k", "degC") } else { ("degc", "K") };
-            (written.si_value == Value::from(t_k) && (min_k..=max_k).contains(&other_k)).then(
+            (written.si_value.as_f64() == Some(t_k) && (min_k..=max_k).contains(&other_k)).then(
                 || format!("{value} was read in {unit}; did you mean {stem}_{other} = {value}?"),
             )
         });
@@ -63,5 +64,30 @@ impl Temperatures {
             Some(hint) => problem.with_hint(hint),
             None => problem,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::WrittenField;
+    use serde_json::json;
+
+    #[test]
+    fn the_other_unit_is_suggested_where_it_fits() {
+        let said = |name: &str, value: f64, si_value: f64| {
+            let (si, name) = ("surroundings_k".to_owned(), name.to_owned());
+            let (value, json) = (json!(value), json!(si_value));
+            let fields = vec![WrittenField { si, name, value, si_value: json, span: None }];
+            let place = Place { fields, ..Place::default() };
+            SURROUNDINGS.problem("pipe", "surroundings_k", si_value, &place)
+        };
+        let kelvin = said("surroundings_k", 20.0, 20.0).unwrap();
+        assert!(kelvin.hint.unwrap().contains("surroundings_degc = 20"));
+        let celsius = said("surroundings_degc", 293.0, 566.15).unwrap();
+        assert!(celsius.message.contains("surroundings_degc = 293"));
+        assert!(celsius.hint.unwrap().contains("surroundings_k = 293"));
+        assert_eq!(said("surroundings_k", 2000.0, 2000.0).unwrap().hint, None);
+        assert_eq!(said("surroundings_degc", -60.0, 213.15), None);
     }
 }
