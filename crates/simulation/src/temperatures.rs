@@ -49,21 +49,26 @@ impl Temperatures {
             "{field} = {t_k} is no temperature of {meaning} ({low_degc} to {high_degc} degC)"
         );
         let problem = refused(what, place, Some(field), &message);
-        let written = place.fields.iter().find(|written| written.si == field);
-        let hint = written.and_then(|written| {
-            let value = written.value.as_f64()?;
-            let stem = field.trim_end_matches("_k");
-            let celsius = written.name.ends_with("_degc");
-            let other_k = if celsius { value } else { value + ZERO_CELSIUS_K };
-            let (other, unit) = if celsius { ("k", "degC") } else { ("degc", "K") };
-            (written.si_value.as_f64() == Some(t_k) && (min_k..=max_k).contains(&other_k)).then(
-                || format!("{value} was read in {unit}; did you mean {stem}_{other} = {value}?"),
-            )
-        });
-        Some(match hint {
+        Some(match self.unit_hint(field, place) {
             Some(hint) => problem.with_hint(hint),
             None => problem,
         })
+    }
+}
+
+impl Temperatures {
+    /// The other unit, where a field lies outside the range as it is written and inside with that one.
+    pub(crate) fn unit_hint(&self, field: &str, place: &Place) -> Option<String> {
+        let (min_k, max_k) = self.range_k();
+        let inside = |t_k: f64| (min_k..=max_k).contains(&t_k);
+        let written = place.fields.iter().find(|written| written.si == field)?;
+        let value = written.value.as_f64()?;
+        let stem = field.strip_suffix("_k").filter(|stem| !stem.ends_with("difference"))?;
+        let celsius = written.name.ends_with("_degc");
+        let (unit, other, other_k) =
+            if celsius { ("degC", "k", value) } else { ("K", "degc", value + ZERO_CELSIUS_K) };
+        let meant = written.si_value.as_f64().is_some_and(|t_k| !inside(t_k)) && inside(other_k);
+        meant.then(|| format!("{value} was read in {unit}; did you mean {stem}_{other} = {value}?"))
     }
 }
 

@@ -14,9 +14,9 @@ const LEAST_PERCENT: f64 = 2.0;
 const LONGEST_VALUE: usize = 40;
 
 /// A parameter that a component refuses: its message begins with `field = value` or `field:` in SI.
-/// `what` names an entry that does not come from a file.
+/// `what` names an entry that does not come from a file, or that an overlay has changed.
 pub(crate) fn refused(what: &str, place: &Place, field: Option<&str>, message: &str) -> Diagnostic {
-    let what = place.entry_or(what);
+    let what = if changed_since(message, place) { what } else { place.entry_or(what) };
     let span = field.map_or_else(|| place.span.clone(), |field| place.of(field));
     let problem = Diagnostic::new(format!("{what}: {}", as_written(message, place)), span);
     match percent_hint(message) {
@@ -214,6 +214,9 @@ mod tests {
         // An overlay has changed it: SI is all there is.
         let changed = "inner_diameter_m = -0.5 must be positive";
         assert_eq!(as_written(changed, &place), changed);
+        let composite = Place { entry: "trench \"a-b\"".into(), ..place };
+        let said = refused("edge \"a-b.hot\"", &composite, Some("inner_diameter_m"), changed);
+        assert!(said.message.starts_with("edge \"a-b.hot\": inner_diameter_m = -0.5"));
     }
 
     #[test]

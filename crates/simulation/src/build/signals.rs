@@ -109,7 +109,10 @@ impl Builder<'_> {
                 Ok(equipment) => equipment,
                 Err(error) => {
                     let what = format!("unit \"{}\" ({})", spec.id, spec.params.kind());
-                    let problem = refused(&what, &spec.place, error.field(), &error.to_string());
+                    let mut problem =
+                        refused(&what, &spec.place, error.field(), &error.to_string());
+                    let hint = error.field().and_then(|field| WATER.unit_hint(field, &spec.place));
+                    problem.hint = problem.hint.or(hint);
                     self.problems.push(problem);
                     continue;
                 }
@@ -117,12 +120,12 @@ impl Builder<'_> {
             let Some(&edge) = edge_ids.get(spec.port.as_str()) else { continue };
             let first = signals.specs().len();
             for input in equipment.inputs() {
-                let signal = SignalSpec {
-                    name: format!("{}.{}", spec.id, input.name),
-                    unit: input.unit,
-                    initial: input.initial,
-                    min: input.min,
-                    max: f64::INFINITY,
+                let name = format!("{}.{}", spec.id, input.name);
+                let signal = if input.unit == "k" && !input.name.contains("difference") {
+                    temperature_signal(&name, input.initial, &WATER)
+                } else {
+                    let (unit, max) = (input.unit, f64::INFINITY);
+                    SignalSpec { name, unit, initial: input.initial, min: input.min, max }
                 };
                 self.add_signal(signals, signal, &spec.place);
             }
