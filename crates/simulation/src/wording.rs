@@ -83,10 +83,13 @@ fn number_of(written: &WrittenField, si: f64) -> Option<String> {
 }
 
 /// A suffix as people write the unit.
-fn in_words(suffix: &str) -> String {
+pub(crate) fn in_words(suffix: &str) -> String {
     match suffix {
         "degc" => "degC".into(),
         "hpa" | "kpa" | "mpa" => format!("{}Pa", suffix[..1].replace('m', "M")),
+        "pa" => "Pa".into(),
+        "k" => "K".into(),
+        "w" => "W".into(),
         "kw" => "kW".into(),
         "mw" => "MW".into(),
         _ => suffix.replace('_', "/"),

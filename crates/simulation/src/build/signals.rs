@@ -7,7 +7,7 @@ use crate::model::{ControllerSpec, Place};
 use crate::model_file::NodeEntryKind;
 use crate::plan::{NodeInputs, Plan, PlannedController, PlannedUnit};
 use crate::temperatures::{SURROUNDINGS, Temperatures, WATER};
-use crate::wording::{in_percent, refused};
+use crate::wording::{in_percent, in_words, refused};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::signal::{SignalSpec, SignalTable};
@@ -183,21 +183,19 @@ impl Builder<'_> {
                 .map(|value| unit.map_or(*value, |unit| unit.to_si(*value)))
                 .collect();
             if let Some(i) = values.iter().position(|v| !(known.min..=known.max).contains(v)) {
-                let written = unit.map(|unit| format!(" ({} in SI)", unit.to_si(spec.values[i])));
                 let message = format!(
-                    "{}: value {}{} at {} s is outside the range of the signal: {}",
+                    "{}: value {} at {} s is outside the range of the signal: {}",
                     spec.source,
                     spec.values[i],
-                    written.unwrap_or_default(),
                     spec.times_s[i],
-                    range(known)
+                    range(known, unit)
                 );
                 let span =
                     spec.place.of(if spec.place.has("points") { "points" } else { "column" });
-                let hint = ratio_hint(known, values[i])
-                    .map(|_| "for values in percent add unit = \"percent\"".to_owned())
-                    .or_else(|| celsius_hint(known, values[i]));
-                self.report(message, span, hint);
+                let percent = || "for values in percent add unit = \"percent\"".to_owned();
+                let hint = ratio_hint(known, values[i]).map(|_| percent());
+                let hint = hint.or_else(|| celsius_hint(known, values[i]));
+                self.report(message, span, hint.filter(|_| unit.is_none()));
                 continue;
             }
             let times: Option<Vec<Time>> = spec.times_s.iter().map(|s| Time::from_s(*s)).collect();
@@ -266,7 +264,7 @@ impl Builder<'_> {
         if (signal.min..=signal.max).contains(&value) {
             return;
         }
-        let (name, range) = (&signal.name, range(signal));
+        let (name, range) = (&signal.name, range(signal, None));
         let message = format!("{field} = {value} is outside the range of \"{name}\": {range}");
         let what = format!("controller \"{}\"", spec.id);
         let mut problem = refused(&what, &spec.place, Some(field), &message);
@@ -338,17 +336,20 @@ impl Builder<'_> {
     }
 }
 
-/// `0 to 1`, with the unit.
-fn range(signal: &SignalSpec) -> String {
-    let unit = match signal.unit {
-        "" => String::new(),
-        "k" => " K".to_owned(),
-        unit => format!(" {}", unit.replace('_', "/")),
+/// `0 to 1`: the values a signal can have, in the unit its values are written in.
+fn range(signal: &SignalSpec, unit: Option<Unit>) -> String {
+    let written = |si: f64| {
+        let value = unit.map_or(si, |unit| unit.of_si(si));
+        // Without the rounding of the conversion.
+        (value * 1e9).round() / 1e9
     };
-    match (signal.min.is_finite(), signal.max.is_finite()) {
-        (true, false) => format!("at least {}{unit}", signal.min),
-        (false, true) => format!("at most {}{unit}", signal.max),
-        _ => format!("{} to {}{unit}", signal.min, signal.max),
+    let (min, max) = (written(signal.min), written(signal.max));
+    let suffix = in_words(unit.map_or(signal.unit, |unit| unit.suffix));
+    let suffix = if suffix.is_empty() { suffix } else { format!(" {suffix}") };
+    match (min.is_finite(), max.is_finite()) {
+        (true, false) => format!("at least {min}{suffix}"),
+        (false, true) => format!("at most {max}{suffix}"),
+        _ => format!("{min} to {max}{suffix}"),
     }
 }
 
