@@ -112,6 +112,10 @@ impl ModelReader<'_> {
         for tree in self.items("interface") {
             let what = format!("interface \"{}\"", tree.text("id").unwrap_or("?"));
             if let Some((entry, table)) = self.reader.read::<InterfaceEntry>(&what, &tree) {
+                if entry.id.is_empty() {
+                    let span = place(&what, &tree, &table).of("id");
+                    self.reader.report(Diagnostic::new("interface: id is empty", span));
+                }
                 stations.edges.insert(entry.id.clone(), entry.edge.clone());
                 interfaces.push(InterfaceSpec::new(entry, place(&what, &tree, &table)));
             }

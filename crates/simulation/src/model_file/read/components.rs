@@ -41,6 +41,10 @@ impl ModelReader<'_> {
         let what = format!("node \"{}\"", plain.tree.text("id").unwrap_or("?"));
         let (entry, table) = self.reader.read::<NodeEntry>(&what, &plain.tree)?;
         let place = place(plain.entry_or(&what), &plain.tree, &table);
+        if entry.id.is_empty() {
+            self.reader.report(Diagnostic::new("node: id is empty", place.of("id")));
+            return None;
+        }
         let word = match entry.kind {
             NodeEntryKind::Junction => "junction",
             NodeEntryKind::PressureBoundary => "pressure_boundary",

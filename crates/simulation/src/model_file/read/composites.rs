@@ -35,6 +35,15 @@ impl ModelReader<'_> {
                 self.wrong_sites.insert(site.id);
                 continue;
             }
+            if site.lines.iter().any(String::is_empty) {
+                wrong(
+                    format!("{what} has a line without name"),
+                    "lines",
+                    "a line is a node ID.LINE",
+                );
+                self.wrong_sites.insert(site.id);
+                continue;
+            }
             let mut seen = HashSet::new();
             if let Some(line) = site.lines.iter().find(|line| !seen.insert(line.as_str())) {
                 let message = format!("{what} has the line \"{line}\" twice");
