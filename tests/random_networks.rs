@@ -179,6 +179,7 @@ impl Sample {
             nodes: nodes.collect(),
             edges: edges.collect(),
             ports: Vec::new(),
+            prescriptions: Vec::new(),
         };
         let exchangers = (0..self.edges.len())
             .filter(|&i| matches!(self.edges[i].params, ElementParams::HeatExchanger(_)));

@@ -67,6 +67,9 @@ pub fn print_steady(model: &Model, steady: &Steady) {
         })
         .collect();
     print_table(&["edge", "kind", "flow l/min", "dp bar"], &edges);
+    for unreached in &steady.unreached {
+        line!("\nwarning: {unreached}");
+    }
     line!(
         "\n{} Newton iterations, largest residual {:.1e} Pa",
         steady.iterations,

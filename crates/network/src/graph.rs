@@ -6,6 +6,7 @@
 
 use crate::elements::Element;
 use crate::two_port::{Characteristic, EdgeState};
+use crate::well_posed::{Equation, Unknown};
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_core::medium::Medium;
 
@@ -91,6 +92,28 @@ pub struct Network {
     pub edges: Vec<Edge>,
     /// Edges with a thermal unit on them; the index is the port of the unit.
     pub ports: Vec<EdgeId>,
+    /// Quantities that are given while an actuator is left free.
+    pub prescriptions: Vec<Prescription>,
+}
+
+/// A quantity that is given, and the actuator that is free in its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Prescription {
+    /// What is given.
+    pub quantity: Quantity,
+    /// The edge whose pump speed or valve opening follows, within its limits.
+    pub free: EdgeId,
+}
+
+/// What can be given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Flow of an edge, kg/s.
+    MassFlow(EdgeId),
+    /// `p_a - p_b` of an edge, Pa.
+    PressureDifference(EdgeId),
+    /// Pressure of a node, Pa.
+    Pressure(NodeId),
 }
 
 /// Something that makes a network unsolvable; ids, so that the caller can name them.
@@ -117,6 +140,16 @@ pub enum GraphProblem {
     IdealLoop {
         /// The edge that closes the loop.
         edge: EdgeId,
+    },
+    /// More equations than unknowns in a part of the network.
+    OverDetermined {
+        /// The equations of the part.
+        equations: Vec<Equation>,
+    },
+    /// Fewer equations than unknowns in a part of the network.
+    UnderDetermined {
+        /// The unknowns of the part.
+        unknowns: Vec<Unknown>,
     },
 }
 
@@ -209,6 +242,7 @@ impl Network {
                 problems.push(GraphProblem::IdealLoop { edge: EdgeId::from_index(i) });
             }
         }
+        problems.extend(crate::well_posed::problems(self));
         problems
     }
 }

@@ -14,16 +14,18 @@
 //! **Sources** Todini and Pilati 1988, Collins et al. 1978 (keys `todini1988`, `collins1978`).
 
 mod assemble;
+mod error;
 mod ideal;
+mod prescribed;
 
-use crate::graph::Network;
+use crate::graph::{Edge, Network};
 use crate::state::NetworkState;
 use crate::two_port::{Characteristic, EdgeState};
-use anergy_core::error::FactorError;
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_core::linear::Linear;
 use assemble::NodalSystem;
-use thiserror::Error;
+pub use error::HydraulicError;
+use prescribed::Stand;
 
 /// Largest accepted pressure residual of an edge, Pa, at zero pressure level.
 const RESIDUAL_PA: f64 = 1e-3;
@@ -58,45 +60,6 @@ pub struct HydraulicReport {
     pub residual_pa: f64,
     /// Largest mass residual of a node, kg/s.
     pub mass_residual_kg_s: f64,
-}
-
-/// Why there are no pressures and flows; ids, so that the caller can name them.
-#[derive(Debug, Error, Clone, PartialEq)]
-pub enum HydraulicError {
-    /// The iteration limit was reached.
-    #[error(
-        "no convergence after {iterations} iterations: edge {} misses its law by {residual_pa} Pa, node {} \
-         its mass balance by {mass_residual_kg_s} kg/s", .edge.0, .node.0
-    )]
-    NotConverged {
-        /// Iterations done.
-        iterations: u32,
-        /// The edge with the largest residual.
-        edge: EdgeId,
-        /// Its residual, Pa.
-        residual_pa: f64,
-        /// The node with the largest mass residual.
-        node: NodeId,
-        /// Its residual, kg/s.
-        mass_residual_kg_s: f64,
-    },
-    /// More water enters than leaves a part of the network that is closed.
-    #[error("{m_flow_kg_s} kg/s more enter than leave the closed part around node {}", .node.0)]
-    Unbalanced {
-        /// A node of the part.
-        node: NodeId,
-        /// Surplus, kg/s.
-        m_flow_kg_s: f64,
-    },
-    /// An input is not a finite number.
-    #[error("edge {} has a position or law that is not finite", .edge.0)]
-    NotFinite {
-        /// The edge.
-        edge: EdgeId,
-    },
-    /// The nodal matrix could not be factorised.
-    #[error(transparent)]
-    Factor(#[from] FactorError),
 }
 
 /// How an edge enters the equations.
@@ -139,6 +102,10 @@ pub struct HydraulicSolver {
     step: Vec<f64>,
     trial_m_kg_s: Vec<f64>,
     trial_laws: Laws,
+    /// What stands for the law of each edge; empty without prescriptions.
+    stand: Vec<Stand>,
+    /// Sign of each prescribed flow in the free edge, where it carries it itself.
+    carried: Vec<Option<f64>>,
 }
 
 impl HydraulicSolver {
@@ -160,6 +127,12 @@ impl HydraulicSolver {
             step: vec![0.0; edges],
             trial_m_kg_s: vec![0.0; edges],
             trial_laws: laws(),
+            stand: if network.prescriptions.is_empty() {
+                Vec::new()
+            } else {
+                vec![Stand::Own; edges]
+            },
+            carried: prescribed::carried(network),
         })
     }
 
@@ -176,8 +149,24 @@ impl HydraulicSolver {
         if state.hydraulics_valid {
             return Ok(HydraulicReport::default());
         }
+        let report = if network.prescriptions.is_empty() {
+            self.solve_laws(network, state)?
+        } else {
+            self.solve_prescribed(network, state)?
+        };
+        self.check_references(network, state)?;
+        state.hydraulics_valid = true;
+        Ok(report)
+    }
+
+    /// Solves with the laws, or what stands for them.
+    fn solve_laws(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+    ) -> Result<HydraulicReport, HydraulicError> {
         self.evaluate(network, state)?;
-        self.system.begin(network, state, &self.kind)?;
+        self.system.begin(network, state, &self.kind, &self.laws)?;
         let mut mass_balanced = false;
         for iteration in 1..=MAX_ITERATIONS {
             self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
@@ -190,10 +179,8 @@ impl HydraulicSolver {
                 let (mass_residual_kg_s, _) = self.system.mass_residual(state);
                 if mass_residual_kg_s <= MASS_RESIDUAL_KG_S {
                     self.known_m_kg_s.copy_from_slice(&state.m_flow_kg_s);
-                    self.known = true;
+                    self.known = self.stand.is_empty();
                     self.system.close(network, state);
-                    self.check_references(network, state)?;
-                    state.hydraulics_valid = true;
                     return Ok(HydraulicReport {
                         iterations: iteration,
                         residual_pa: trial.residual_pa,
@@ -203,6 +190,15 @@ impl HydraulicSolver {
             }
         }
         Err(self.not_converged(network, state))
+    }
+
+    /// What an edge answers, or what stands for it.
+    #[inline]
+    fn answer(&self, edge: &Edge, i: usize, m: f64, state: &EdgeState) -> Characteristic {
+        match self.stand.get(i) {
+            Some(stand) => stand.characteristic(m, || edge.characteristic(m, state)),
+            None => edge.characteristic(m, state),
+        }
     }
 
     /// Law of every edge at the flows of the state; those that are known are kept.
@@ -219,7 +215,7 @@ impl HydraulicSolver {
                 continue;
             }
             self.known_state[i] = edge_state;
-            let (kind, law) = match edge.characteristic(m, &edge_state) {
+            let (kind, law) = match self.answer(edge, i, m, &edge_state) {
                 Characteristic::PressureLoss(law) => (Kind::Law, law),
                 Characteristic::ImposedFlow { m_flow_kg_s } => {
                     (Kind::Imposed, Linear::new(m_flow_kg_s, 1.0))
@@ -295,7 +291,7 @@ impl HydraulicSolver {
                 continue;
             }
             let Characteristic::PressureLoss(law) =
-                edge.characteristic(m, &state.edge_state(network, i))
+                self.answer(edge, i, m, &state.edge_state(network, i))
             else {
                 return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
             };

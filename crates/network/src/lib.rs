@@ -13,3 +13,4 @@ pub mod interface;
 pub mod state;
 pub mod transport;
 pub mod two_port;
+pub mod well_posed;

@@ -29,6 +29,8 @@ pub struct NetworkState {
     pub ambient_k: f64,
     /// Flow that fixed nodes and sources bring into the network, kg/s.
     pub exchange_kg_s: Vec<f64>,
+    /// Value and state of each prescription of the network.
+    pub prescribed: Vec<Prescribed>,
     /// Whether flows and pressures belong to the present positions and boundary values.
     pub(crate) hydraulics_valid: bool,
     /// Temperature of each node, K.
@@ -51,6 +53,27 @@ pub struct NetworkState {
     pub port_flows: Vec<PortFlow>,
     /// Content of the pipes.
     pub parcels: Parcels,
+}
+
+/// A prescription at the moment.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Prescribed {
+    /// The given value, SI.
+    pub value: f64,
+    /// Whether it is reached, or where its actuator ends.
+    pub hold: Hold,
+}
+
+/// Whether a free actuator reaches what is prescribed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Hold {
+    /// The value is held.
+    #[default]
+    Held,
+    /// The actuator is at its lower limit, which is still too much.
+    AtMin,
+    /// The actuator is at its upper limit, which is not enough.
+    AtMax,
 }
 
 impl NetworkState {
@@ -76,6 +99,7 @@ impl NetworkState {
             surroundings_k: vec![initial_k; edges],
             ambient_k: initial_k,
             exchange_kg_s: vec![0.0; nodes],
+            prescribed: vec![Prescribed::default(); network.prescriptions.len()],
             hydraulics_valid: false,
             t_node_k: vec![initial_k; nodes],
             t_edge_k: vec![initial_k; edges],
@@ -141,6 +165,21 @@ impl NetworkState {
             self.hydraulics_valid = false;
         }
         self.given_t_k[node] = t_k;
+    }
+
+    /// Sets the value of a prescription, SI.
+    pub fn prescribe(&mut self, prescription: usize, value: f64) {
+        let prescribed = &mut self.prescribed[prescription];
+        if prescribed.value != value {
+            prescribed.value = value;
+            self.hydraulics_valid = false;
+        }
+    }
+
+    /// Puts the actuator of an edge where the solver found it.
+    pub(crate) fn place_actuator(&mut self, edge: usize, position: f64) {
+        self.actuator_lag[edge] = position;
+        self.position[edge] = position;
     }
 
     /// Marks flows and pressures as not belonging to the present inputs, so that they are solved anew.
@@ -224,6 +263,7 @@ mod tests {
             nodes: vec![node.clone(), node],
             edges: vec![edge],
             ports: vec![],
+            prescriptions: vec![],
         };
         // After the rise time x = 5/sqrt(sqrt 2 - 1) = 7.769: 1 - (1 + x) e^-x = 0.99630
         let run = |steps: i32| {

@@ -1,6 +1,7 @@
 //! From names to ids: a model becomes a plan, or all its problems are reported.
 
 mod network;
+mod prescribed;
 mod signals;
 
 pub(crate) use network::pipe_temperatures;
@@ -84,7 +85,8 @@ impl Builder<'_> {
             .map(|edge| ("edge", &edge.id, &edge.place))
             .chain(model.units.iter().map(|unit| ("unit", &unit.id, &unit.place)))
             .chain(model.interfaces.iter().map(|i| ("interface", &i.id, &i.place)))
-            .chain(model.controllers.iter().map(|c| ("controller", &c.id, &c.place)));
+            .chain(model.controllers.iter().map(|c| ("controller", &c.id, &c.place)))
+            .chain(model.prescriptions.iter().map(|p| ("prescription", &p.id, &p.place)));
         self.check_doubled(others.collect());
         if model.edges.is_empty() && self.problems.is_empty() {
             let hint = "add a [[trench]], a [[station]] or an [[edge]]".to_owned();
@@ -118,8 +120,16 @@ impl Builder<'_> {
         let edges = self.edges(&node_ids, &edge_ids);
         let ports = self.ports(&edge_ids);
         let whole = edges.len() == model.edges.len();
-        let network =
-            Network { medium: model.medium, gravity_m_s2: model.gravity_m_s2, nodes, edges, ports };
+        let prescriptions =
+            if whole { self.prescriptions(&node_ids, &edge_ids, &edges) } else { Vec::new() };
+        let network = Network {
+            medium: model.medium,
+            gravity_m_s2: model.gravity_m_s2,
+            nodes,
+            edges,
+            ports,
+            prescriptions,
+        };
         if whole && self.problems.is_empty() {
             self.check_graph(&network);
         }
@@ -127,7 +137,7 @@ impl Builder<'_> {
         let ground = temperature_signal("ground.temperature_k", model.ground_k, &SURROUNDINGS);
         let ground = self.add_signal(&mut signals, ground, &Place::default());
         let node_inputs = self.node_signals(&mut signals);
-        let commands = if whole {
+        let mut commands = if whole {
             self.edge_signals(&network, &mut signals)
         } else {
             vec![None; model.edges.len()]
@@ -136,6 +146,12 @@ impl Builder<'_> {
         let mut writers: HashMap<SignalId, Writer> = HashMap::new();
         let units = self.units(&edge_ids, &network, &commands, &mut signals, &mut writers);
         let stations = self.stations(&edge_ids);
+        let prescriptions =
+            self.prescribed_signals(&network.prescriptions, &commands, &mut signals, &mut writers);
+        for prescription in &network.prescriptions {
+            // What is free follows no command.
+            commands[prescription.free.index()] = None;
+        }
         let controller_signals: Vec<SignalId> = self
             .model
             .controllers
@@ -163,6 +179,7 @@ impl Builder<'_> {
             stations,
             units,
             controllers: Vec::new(),
+            prescriptions,
             drivers,
             signals,
             commands,

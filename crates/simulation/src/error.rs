@@ -44,6 +44,16 @@ pub enum RunError {
         /// Surplus, kg/s.
         m_flow_kg_s: f64,
     },
+    /// What is prescribed cannot be found by the actuator that is free for it.
+    #[error("at {time}: edge \"{free}\", left free: {problem}")]
+    Prescribed {
+        /// Simulated time.
+        time: String,
+        /// The edge whose actuator is free.
+        free: String,
+        /// What is the matter.
+        problem: &'static str,
+    },
     /// A component got or gave a number that is not finite.
     #[error("at {time}: {component} has a value that is not a finite number")]
     NotFinite {

@@ -114,8 +114,13 @@ impl Model {
             .collect();
         let component = |name: &str| name.rsplit_once('.').is_some_and(|(c, _)| kept.contains(c));
         model.controllers.retain(|c| component(&c.measures) && component(&c.acts_on));
-        let set_points: HashSet<String> =
-            model.controllers.iter().map(|c| format!("{}.set_point", c.id)).collect();
+        model.prescriptions.retain(|p| component(&p.entry.quantity) && component(&p.entry.free));
+        let set_points: HashSet<String> = model
+            .controllers
+            .iter()
+            .map(|c| format!("{}.set_point", c.id))
+            .chain(model.prescriptions.iter().map(|p| format!("{}.value", p.id)))
+            .collect();
         model
             .drivers
             .retain(|driver| component(&driver.signal) || set_points.contains(&driver.signal));

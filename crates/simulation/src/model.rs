@@ -5,7 +5,7 @@
 
 use crate::diagnostic::Diagnostics;
 use crate::model_file::{
-    InterfaceEntry, Interpolation, NodeEntry, PressureReferenceEntry, RunEntry,
+    InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry, RunEntry,
 };
 use anergy_control::controllers::ControllerParams;
 use anergy_core::medium::Medium;
@@ -153,6 +153,17 @@ pub struct ControllerSpec {
     pub place: Place,
 }
 
+/// A quantity that is given while an actuator is free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrescriptionSpec {
+    /// Name; the given value is the signal `id.value`.
+    pub id: String,
+    /// Its fields.
+    pub entry: PrescribedEntry,
+    /// Where it stands.
+    pub place: Place,
+}
+
 /// A signal driven over time by a schedule or a series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriverSpec {
@@ -206,6 +217,8 @@ pub struct Model {
     pub interfaces: Vec<InterfaceSpec>,
     /// Controllers.
     pub controllers: Vec<ControllerSpec>,
+    /// Prescriptions.
+    pub prescriptions: Vec<PrescriptionSpec>,
     /// Schedules and series.
     pub drivers: Vec<DriverSpec>,
     /// Pressure references.

@@ -231,6 +231,24 @@ pub struct InterfaceEntry {
     pub requested_flow_m3_s: Option<f64>,
 }
 
+/// `[[prescribed]]`: a quantity that is given, and the actuator that is left free in its place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PrescribedEntry {
+    /// Name. Absent: the free actuator and `.prescribed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
+    /// What is given: `EDGE.m_flow_kg_s`, `STATION.m_flow_kg_s`, `EDGE.dp_pa` or `NODE.p_pa`.
+    pub quantity: String,
+    /// Its value.
+    pub value: f64,
+    /// Unit of the value. Absent: SI.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// The command that is free: `PUMP.speed`, `VALVE.opening`.
+    pub free: String,
+}
+
 /// `[[node]]`: a plain node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -91,6 +91,13 @@ impl Model {
                 .collect(),
         );
         section(
+            "prescribed",
+            self.prescriptions
+                .iter()
+                .map(|spec| joined(json!({ "id": spec.id }), without_nulls(json!(spec.entry))))
+                .collect(),
+        );
+        section(
             "schedule",
             self.drivers
                 .iter()

@@ -40,6 +40,13 @@ pub(crate) struct PlannedController {
     pub state: Range<usize>,
 }
 
+/// A prescription with the signal of its value; in the order of the network's.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedPrescription {
+    pub name: String,
+    pub signal: SignalId,
+}
+
 /// What a boundary value of the network is driven by.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NodeInputs {
@@ -61,6 +68,7 @@ pub struct Plan {
     pub(crate) station_of_valve: Vec<Option<usize>>,
     pub(crate) units: Vec<PlannedUnit>,
     pub(crate) controllers: Vec<PlannedController>,
+    pub(crate) prescriptions: Vec<PlannedPrescription>,
     pub(crate) drivers: Vec<Driver>,
     pub(crate) signals: SignalTable,
     /// Command signal of each edge.

@@ -1,6 +1,7 @@
 //! A simulation: an immutable plan, a state that is plain data, and the step.
 
 mod access;
+mod words;
 
 use crate::channels;
 use crate::error::RunError;
@@ -9,13 +10,16 @@ use crate::state::State;
 use anergy_core::clock::Time;
 use anergy_core::error::FactorError;
 use anergy_core::ids::SignalId;
-use anergy_core::recorder::{Event, Severity};
+use anergy_core::recorder::Event;
 use anergy_core::signal::Signals;
 use anergy_network::elements::Element;
 use anergy_network::graph::NodeKind;
-use anergy_network::hydraulics::{HydraulicError, HydraulicReport, HydraulicSolver};
+use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
+use anergy_network::state::Hold;
 use anergy_network::transport::Transport;
 use std::sync::Arc;
+pub use words::Unreached;
+use words::{blocked_event, named, prescribed_event};
 
 /// A simulation that can be stepped.
 pub struct Simulation {
@@ -26,6 +30,8 @@ pub struct Simulation {
     /// Events since they were last taken.
     events: Vec<Event>,
     wanted: Vec<anergy_core::port::PortRequest>,
+    /// What the prescriptions were before the last solve.
+    holds: Vec<Hold>,
 }
 
 impl Simulation {
@@ -44,6 +50,7 @@ impl Simulation {
             transport,
             events: Vec::with_capacity(64),
             wanted: plan.initial.network.requests.clone(),
+            holds: vec![Hold::Held; plan.prescriptions.len()],
             plan,
         };
         simulation.reset()?;
@@ -182,6 +189,9 @@ impl Simulation {
                 at(inputs.t_k, network.given_t_k[i]),
             );
         }
+        for (k, prescription) in self.plan.prescriptions.iter().enumerate() {
+            self.state.network.prescribe(k, signals[prescription.signal.index()]);
+        }
         self.state.network.ambient_k = signals[self.plan.ground.index()];
         for (around, id) in
             self.state.network.surroundings_k.iter_mut().zip(&self.plan.surroundings)
@@ -210,10 +220,19 @@ impl Simulation {
     }
 
     pub(crate) fn solve_hydraulics(&mut self) -> Result<HydraulicReport, RunError> {
+        let prescribed = &self.state.network.prescribed;
+        for (hold, prescribed) in self.holds.iter_mut().zip(prescribed) {
+            *hold = prescribed.hold;
+        }
         let report = self
             .solver
             .solve(&self.plan.network, &mut self.state.network)
             .map_err(|error| named(&self.plan, self.state.time, &error))?;
+        for (k, before) in self.holds.iter().enumerate() {
+            if self.state.network.prescribed[k].hold != *before {
+                self.events.push(prescribed_event(&self.plan, &self.state, k));
+            }
+        }
         if report.iterations > 0 {
             self.state.solves += 1;
             self.state.iterations += u64::from(report.iterations);
@@ -339,59 +358,5 @@ impl Simulation {
     /// Takes the events since the last call.
     pub fn take_events(&mut self) -> std::vec::Drain<'_, Event> {
         self.events.drain(..)
-    }
-}
-
-fn blocked_event(
-    plan: &Plan,
-    station: usize,
-    time: Time,
-    blocked: bool,
-    flow: f64,
-    wanted: f64,
-) -> Event {
-    let component = plan.station_names[station].clone();
-    let density = plan.network.medium.density_kg_m3;
-    let l_min = |m: f64| anergy_core::units::l_min(m, density);
-    let verb = if blocked { "is blocked: it delivers" } else { "is free again: it delivers" };
-    Event {
-        time,
-        severity: if blocked { Severity::Warning } else { Severity::Info },
-        kind: if blocked { "blocked" } else { "unblocked" }.into(),
-        message: format!(
-            "{component} {verb} {:.2} of {:.2} l/min wanted",
-            l_min(flow),
-            l_min(wanted)
-        ),
-        component,
-    }
-}
-
-fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError {
-    let time = time.to_string();
-    let node_name = |id: anergy_core::ids::NodeId| plan.node_names[id.index()].clone();
-    let edge_name = |id: anergy_core::ids::EdgeId| plan.edge_names[id.index()].clone();
-    match *error {
-        HydraulicError::NotConverged {
-            iterations,
-            edge,
-            residual_pa,
-            node,
-            mass_residual_kg_s,
-        } => RunError::NotConverged {
-            time,
-            iterations,
-            edge: edge_name(edge),
-            residual_pa,
-            node: node_name(node),
-            mass_residual_kg_s,
-        },
-        HydraulicError::Unbalanced { node, m_flow_kg_s } => {
-            RunError::Unbalanced { time, node: node_name(node), m_flow_kg_s }
-        }
-        HydraulicError::NotFinite { edge } => {
-            RunError::NotFinite { time, component: format!("edge \"{}\"", edge_name(edge)) }
-        }
-        HydraulicError::Factor(source) => RunError::Singular { time, source },
     }
 }

@@ -8,8 +8,9 @@ use crate::build::build;
 use crate::channels;
 use crate::error::RunError;
 use crate::model::Model;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, Unreached};
 use anergy_network::hydraulics::HydraulicReport;
+use anergy_network::state::Hold;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -61,6 +62,9 @@ pub struct Steady {
     pub iterations: u32,
     /// Largest pressure residual of an edge, Pa.
     pub residual_pa: f64,
+    /// Prescriptions that cannot be reached.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unreached: Vec<Unreached>,
 }
 
 impl Steady {
@@ -262,5 +266,9 @@ pub fn table(simulation: &Simulation, report: HydraulicReport) -> Steady {
             .collect(),
         iterations: report.iterations,
         residual_pa: report.residual_pa,
+        unreached: (0..plan.prescriptions.len())
+            .filter(|&k| network.prescribed[k].hold != Hold::Held)
+            .map(|k| Unreached::new(plan, simulation.state(), k))
+            .collect(),
     }
 }

@@ -141,6 +141,7 @@ impl NodalSystem {
         network: &Network,
         state: &mut NetworkState,
         kind: &[Kind],
+        laws: &Laws,
     ) -> Result<(), HydraulicError> {
         for (i, node) in network.nodes.iter().enumerate() {
             if node.has_fixed_pressure() {
@@ -164,7 +165,7 @@ impl NodalSystem {
             self.kind_before.extend_from_slice(kind);
             self.find_islands(network, kind);
         }
-        self.check_islands(network, state, kind)
+        self.check_islands(network, state, kind, laws)
     }
 
     fn find_islands(&mut self, network: &Network, kind: &[Kind]) {
@@ -192,6 +193,7 @@ impl NodalSystem {
         network: &Network,
         state: &NetworkState,
         kind: &[Kind],
+        laws: &Laws,
     ) -> Result<(), HydraulicError> {
         if self.floating.is_empty() {
             return Ok(());
@@ -199,10 +201,7 @@ impl NodalSystem {
         self.net_inflow.fill(0.0);
         let imposed = |(i, _): &(usize, _)| kind[*i] == Kind::Imposed;
         for (i, edge) in network.edges.iter().enumerate().filter(imposed) {
-            let m = match edge.characteristic(0.0, &state.edge_state(network, i)) {
-                crate::two_port::Characteristic::ImposedFlow { m_flow_kg_s } => m_flow_kg_s,
-                _ => 0.0,
-            };
+            let m = laws.loss[i];
             let (a, b) = (self.islands.find(edge.from.index()), self.islands.find(edge.to.index()));
             self.net_inflow[a] -= m;
             self.net_inflow[b] += m;
@@ -286,6 +285,34 @@ impl NodalSystem {
             step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / laws.slope[i];
         }
         Ok(())
+    }
+
+    /// Response of the pressures to 1 Pa of head in an edge, at the last factorisation.
+    pub(super) fn respond(&mut self, edge: usize, laws: &Laws) {
+        self.increment.fill(0.0);
+        balance(&mut self.increment, &self.slots[edge], 1.0 / laws.slope[edge]);
+        self.cholesky.solve_in_place(&mut self.increment);
+    }
+
+    /// Response of the pressure of a node, Pa/Pa.
+    pub(super) fn response_pa(&self, node: usize) -> f64 {
+        let unknown = self.unknown_of_node[node];
+        if unknown == NONE { 0.0 } else { self.increment[unknown as usize] }
+    }
+
+    /// Response of the pressure difference of an edge, Pa/Pa.
+    pub(super) fn response_dp_pa(&self, edge: usize) -> f64 {
+        let slots = &self.slots[edge];
+        self.response_pa(slots.node_a as usize) - self.response_pa(slots.node_b as usize)
+    }
+
+    /// Whether an end of an edge lies in a part without a pressure level.
+    pub(super) fn joins_floating(&mut self, network: &Network, edge: usize) -> bool {
+        let edge = &network.edges[edge];
+        [edge.from, edge.to].into_iter().any(|node| {
+            let root = self.islands.find(node.index());
+            !self.island_fixed[root]
+        })
     }
 
     /// What sources bring to each unknown.

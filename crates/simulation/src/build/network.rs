@@ -281,6 +281,8 @@ impl Builder<'_> {
                     self.model.edges[edge.index()].place.span.clone(),
                 )
                 .with_hint("put a resistance into the loop"),
+                GraphProblem::OverDetermined { equations } => self.over_determined(&equations),
+                GraphProblem::UnderDetermined { unknowns } => self.under_determined(&unknowns),
             });
         }
         self.problems.extend(found);

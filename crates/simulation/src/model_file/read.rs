@@ -32,6 +32,7 @@ pub(super) const SECTIONS: &[&str] = &[
     "interface",
     "unit",
     "controller",
+    "prescribed",
     "schedule",
     "series",
     "pressure_reference",
@@ -125,6 +126,7 @@ impl ModelReader<'_> {
             units: self.units(&stations),
             interfaces,
             controllers: self.controllers(),
+            prescriptions: self.prescriptions(),
             drivers: self.drivers(start),
             references: self.references(),
             name: about.as_ref()?.0.name.clone(),
@@ -284,6 +286,19 @@ impl ModelReader<'_> {
             }
         }
         drivers
+    }
+
+    fn prescriptions(&mut self) -> Vec<PrescriptionSpec> {
+        let items = self.items("prescribed");
+        items
+            .iter()
+            .filter_map(|tree| {
+                let what = format!("prescribed {}", tree.text("quantity").unwrap_or("?"));
+                let (entry, table) = self.reader.read::<PrescribedEntry>(&what, tree)?;
+                let id = entry.id.clone().unwrap_or_else(|| format!("{}.prescribed", entry.free));
+                Some(PrescriptionSpec { id, entry, place: place(&what, tree, &table) })
+            })
+            .collect()
     }
 
     fn references(&mut self) -> Vec<ReferenceSpec> {

@@ -70,6 +70,7 @@ pub fn schema() -> Value {
             ],
             &["measures", "acts_on"],
         )),
+        "prescribed": list(entry(&schema_for!(PrescribedEntry), &[])),
         "schedule": list(entry(&schema_for!(ScheduleEntry), &[])),
         "series": list(entry(&schema_for!(SeriesEntry), &[])),
         "pressure_reference": { "oneOf": [reference.clone(), list(reference)] },

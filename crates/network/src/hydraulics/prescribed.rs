@@ -1,0 +1,394 @@
+//! Given quantities with free actuators: a flow, a pressure difference or a pressure is known, a pump
+//! speed or valve opening follows.
+//!
+//! **Equation** a free edge has no law. If what is given is the flow of the edge itself, or of one in
+//! series with it, that flow is imposed. Otherwise the edge becomes a straight law `R m - h` with an
+//! unknown head h: the network stays a convex problem for any h, and Newton finds the heads from the
+//! exact sensitivities `d quantity/d h` of the factorised matrix. The position is then the one whose law
+//! has the flow and pressure difference found.
+//!
+//! **Numerics** where no position has them, the actuator stays at the limit that comes closer, with its
+//! own law, until the given quantity is passed from there. A prescription changes so at most a few times
+//! in a solve, the last times one at a time.
+
+use super::{HydraulicError, HydraulicReport, HydraulicSolver};
+use crate::graph::{Edge, Network, NodeKind, Quantity};
+use crate::state::{Hold, NetworkState, Prescribed};
+use crate::two_port::{Characteristic, EdgeState};
+use anergy_core::ids::EdgeId;
+use anergy_core::linear::Linear;
+use nalgebra::{DMatrix, DVector};
+
+/// A prescribed flow and pressure are met within these.
+const FLOW_KG_S: f64 = 1e-8;
+const PRESSURE_PA: f64 = 1e-2;
+const RELATIVE: f64 = 1e-7;
+const MAX_NEWTON: usize = 60;
+/// Rounds in which all prescriptions may change between held and limit, and rounds with one change each.
+const ROUNDS_TOGETHER: usize = 4;
+const ROUNDS_EACH: usize = 4;
+/// Slopes of the straight laws of free edges, Pa s/kg.
+const SLOPE_RANGE: (f64, f64) = (1e2, 1e8);
+
+/// What stands for the law of an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Stand {
+    /// Its own law.
+    Own,
+    /// A given flow, kg/s.
+    Flow(f64),
+    /// `dp = slope m - head`.
+    Head { slope: f64, head: f64 },
+}
+
+impl Stand {
+    /// The answer in place of the element's.
+    pub(super) fn characteristic(
+        self,
+        m: f64,
+        own: impl FnOnce() -> Characteristic,
+    ) -> Characteristic {
+        match self {
+            Self::Own => own(),
+            Self::Flow(m_flow_kg_s) => Characteristic::ImposedFlow { m_flow_kg_s },
+            Self::Head { slope, head } => {
+                Characteristic::PressureLoss(Linear::new(slope * m - head, slope))
+            }
+        }
+    }
+}
+
+/// For each prescription of a flow: +1 or -1 where the free edge carries that flow itself.
+pub(super) fn carried(network: &Network) -> Vec<Option<f64>> {
+    if network.prescriptions.is_empty() {
+        return Vec::new();
+    }
+    let mut incident = vec![Vec::new(); network.nodes.len()];
+    for (i, edge) in network.edges.iter().enumerate() {
+        incident[edge.from.index()].push(i);
+        incident[edge.to.index()].push(i);
+    }
+    let prescriptions = network.prescriptions.iter();
+    prescriptions
+        .map(|prescription| match prescription.quantity {
+            Quantity::MassFlow(edge) => {
+                series_sign(network, &incident, prescription.free.index(), edge.index())
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+/// Sign of the flow of `other` against that of `edge` where all water of one passes the other.
+fn series_sign(network: &Network, incident: &[Vec<usize>], edge: usize, other: usize) -> Option<f64> {
+    if edge == other {
+        return Some(1.0);
+    }
+    let Edge { from, to, .. } = network.edges[edge];
+    for start in [from, to] {
+        let (mut at, mut last) = (start, edge);
+        // Walks away from the edge as long as there is one way on.
+        for _ in 0..network.edges.len() {
+            let [a, b] = incident[at.index()][..] else { break };
+            if network.nodes[at.index()].kind != NodeKind::Junction {
+                break;
+            }
+            let next = if a == last { b } else { a };
+            let onwards = network.edges[next].from == at;
+            if next == other {
+                return Some(if onwards == (start == to) { 1.0 } else { -1.0 });
+            }
+            at = if onwards { network.edges[next].to } else { network.edges[next].from };
+            last = next;
+        }
+    }
+    None
+}
+
+/// Where the law of an edge passes through a flow and a pressure difference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Place {
+    At(f64),
+    Below,
+    Above,
+}
+
+impl HydraulicSolver {
+    /// Solves with every prescription held or at a limit of its actuator.
+    pub(super) fn solve_prescribed(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+    ) -> Result<HydraulicReport, HydraulicError> {
+        let count = network.prescriptions.len();
+        self.known = false;
+        // A snapshot continues bit for bit: the stands begin from the state alone.
+        self.stand.fill(Stand::Own);
+        let mut iterations = 0;
+        for round in 0..ROUNDS_TOGETHER + ROUNDS_EACH * count {
+            for k in 0..count {
+                self.take_stand(network, state, k);
+            }
+            let report = self.solve_heads(network, state, &mut iterations)?;
+            let mut changes = self.changes(network, state);
+            if changes.is_empty() {
+                return Ok(HydraulicReport { iterations, ..report });
+            }
+            if round >= ROUNDS_TOGETHER {
+                changes.truncate(1);
+            }
+            for (k, hold) in changes {
+                state.prescribed[k].hold = hold;
+            }
+        }
+        let culprit = self.changes(network, state).first().map_or(0, |change| change.0);
+        Err(HydraulicError::Undecided { edge: network.prescriptions[culprit].free })
+    }
+
+    /// What stands for the law of the free edge of a prescription.
+    fn take_stand(&mut self, network: &Network, state: &mut NetworkState, k: usize) {
+        let edge = network.prescriptions[k].free.index();
+        let (min, max) = limits(network, edge);
+        let prescribed = state.prescribed[k];
+        self.stand[edge] = match (prescribed.hold, self.carried[k]) {
+            (Hold::AtMin, _) => {
+                state.place_actuator(edge, min);
+                Stand::Own
+            }
+            (Hold::AtMax, _) => {
+                state.place_actuator(edge, max);
+                Stand::Own
+            }
+            (Hold::Held, Some(sign)) => Stand::Flow(sign * prescribed.value),
+            (Hold::Held, None) => {
+                let m = state.m_flow_kg_s[edge];
+                match (self.stand[edge], own_law(network, edge, m, state.edge_state(network, edge)))
+                {
+                    (head @ Stand::Head { .. }, _) => head,
+                    (_, Some(law)) => {
+                        let slope = law.slope.clamp(SLOPE_RANGE.0, SLOPE_RANGE.1);
+                        Stand::Head { slope, head: slope * m - law.value }
+                    }
+                    (_, None) => Stand::Head { slope: SLOPE_RANGE.1, head: 0.0 },
+                }
+            }
+        };
+    }
+
+    /// Newton on the heads of the free edges; one hydraulic solve where there is none.
+    fn solve_heads(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+        iterations: &mut u32,
+    ) -> Result<HydraulicReport, HydraulicError> {
+        let sought: Vec<usize> = (0..network.prescriptions.len())
+            .filter(|&k| {
+                let free = network.prescriptions[k].free.index();
+                matches!(self.stand[free], Stand::Head { .. })
+            })
+            .collect();
+        let mut last: Option<(f64, DVector<f64>)> = None;
+        for _ in 0..MAX_NEWTON {
+            let report = self.solve_laws(network, state)?;
+            *iterations += report.iterations;
+            self.check_floating(network)?;
+            let errors = DVector::from_iterator(
+                sought.len(),
+                sought.iter().map(|&k| {
+                    let quantity = network.prescriptions[k].quantity;
+                    let target = state.prescribed[k].value;
+                    (target - present(network, state, quantity)) / tolerance(quantity, target)
+                }),
+            );
+            let norm = errors.amax();
+            if sought.is_empty() || norm <= 1.0 {
+                return Ok(report);
+            }
+            let change = match last.take() {
+                // Overshot: half the way back.
+                Some((before, change)) if norm > before => {
+                    let back = change * -0.5;
+                    last = Some((before, -back.clone()));
+                    back
+                }
+                _ => {
+                    let change = self.head_changes(network, state, &sought, &errors)?;
+                    last = Some((norm, change.clone()));
+                    change
+                }
+            };
+            for (&k, change) in sought.iter().zip(&change) {
+                let free = network.prescriptions[k].free.index();
+                if let Stand::Head { head, .. } = &mut self.stand[free] {
+                    *head += change;
+                }
+            }
+            state.invalidate_hydraulics();
+        }
+        let free = sought.first().map_or(0, |&k| network.prescriptions[k].free.index());
+        Err(HydraulicError::Undecided { edge: EdgeId::from_index(free) })
+    }
+
+    /// Changes of the heads that remove the errors, from the sensitivities.
+    fn head_changes(
+        &mut self,
+        network: &Network,
+        state: &NetworkState,
+        sought: &[usize],
+        errors: &DVector<f64>,
+    ) -> Result<DVector<f64>, HydraulicError> {
+        let mut jacobian = DMatrix::zeros(sought.len(), sought.len());
+        for (column, &k) in sought.iter().enumerate() {
+            let free = network.prescriptions[k].free;
+            self.system.respond(free.index(), &self.laws);
+            for (row, &j) in sought.iter().enumerate() {
+                let quantity = network.prescriptions[j].quantity;
+                let scale = tolerance(quantity, state.prescribed[j].value);
+                jacobian[(row, column)] = self.response(quantity, free) / scale;
+            }
+            if jacobian.column(column).amax() == 0.0 {
+                return Err(HydraulicError::NoEffect { edge: free });
+            }
+        }
+        jacobian
+            .lu()
+            .solve(errors)
+            .filter(|change| change.iter().all(|c| c.is_finite()))
+            .ok_or(HydraulicError::NoEffect { edge: network.prescriptions[sought[0]].free })
+    }
+
+    /// Change of a quantity by 1 Pa of head of the edge that [`NodalSystem::respond`] was told.
+    fn response(&self, quantity: Quantity, free: EdgeId) -> f64 {
+        match quantity {
+            Quantity::Pressure(node) => self.system.response_pa(node.index()),
+            Quantity::PressureDifference(edge) => self.system.response_dp_pa(edge.index()),
+            Quantity::MassFlow(edge) => {
+                let own = f64::from(u8::from(edge == free));
+                (self.system.response_dp_pa(edge.index()) + own) / self.laws.slope[edge.index()]
+            }
+        }
+    }
+
+    /// Places the actuators that are free; says which prescriptions turn out to be at a limit, and which
+    /// leave theirs, the worst first.
+    fn changes(&mut self, network: &Network, state: &mut NetworkState) -> Vec<(usize, Hold)> {
+        let mut changes: Vec<(f64, usize, Hold)> = Vec::new();
+        for (k, prescription) in network.prescriptions.iter().enumerate() {
+            let edge = prescription.free.index();
+            let Prescribed { value, hold } = state.prescribed[k];
+            let error = (value - present(network, state, prescription.quantity))
+                / tolerance(prescription.quantity, value);
+            if hold == Hold::Held {
+                let dp = self.system.driving_pa(state, edge);
+                match place(network, state, edge, dp) {
+                    Place::At(position) => state.place_actuator(edge, position),
+                    Place::Below => changes.push((f64::INFINITY, k, Hold::AtMin)),
+                    Place::Above => changes.push((f64::INFINITY, k, Hold::AtMax)),
+                }
+                continue;
+            }
+            // Would moving the actuator away from its limit bring the quantity closer?
+            self.system.respond(edge, &self.laws);
+            let by_head = self.response(prescription.quantity, prescription.free);
+            let wanted = error * by_head * head_by_position(network, state, edge);
+            let inwards = if hold == Hold::AtMin { wanted > 0.0 } else { wanted < 0.0 };
+            if inwards && error.abs() > 1.0 {
+                changes.push((error.abs(), k, Hold::Held));
+            }
+        }
+        changes.sort_by(|a, b| b.0.total_cmp(&a.0));
+        changes.into_iter().map(|(_, k, hold)| (k, hold)).collect()
+    }
+
+    /// A free edge between parts of which one has no pressure level has no defined position.
+    fn check_floating(&mut self, network: &Network) -> Result<(), HydraulicError> {
+        for prescription in &network.prescriptions {
+            let edge = prescription.free.index();
+            if matches!(self.stand[edge], Stand::Flow(_))
+                && self.system.joins_floating(network, edge)
+            {
+                return Err(HydraulicError::Undetermined { edge: prescription.free });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn limits(network: &Network, edge: usize) -> (f64, f64) {
+    network.edges[edge].element.actuator().map_or((0.0, 0.0), |a| (a.min, a.max))
+}
+
+fn own_law(network: &Network, edge: usize, m: f64, state: EdgeState) -> Option<Linear> {
+    match network.edges[edge].characteristic(m, &state) {
+        Characteristic::PressureLoss(law) => Some(law),
+        _ => None,
+    }
+}
+
+/// The present value of a quantity.
+fn present(network: &Network, state: &NetworkState, quantity: Quantity) -> f64 {
+    match quantity {
+        Quantity::MassFlow(edge) => state.m_flow_kg_s[edge.index()],
+        Quantity::PressureDifference(edge) => state.dp_pa(network, edge.index()),
+        Quantity::Pressure(node) => state.p_pa[node.index()],
+    }
+}
+
+fn tolerance(quantity: Quantity, target: f64) -> f64 {
+    match quantity {
+        Quantity::MassFlow(_) => FLOW_KG_S + RELATIVE * target.abs(),
+        _ => PRESSURE_PA + RELATIVE * target.abs(),
+    }
+}
+
+/// The loss of an edge at a position and the present flow, Pa; infinite for a tightly closed one.
+fn loss_at(network: &Network, state: &NetworkState, edge: usize, position: f64) -> f64 {
+    let m = state.m_flow_kg_s[edge];
+    let at = EdgeState { position, ..state.edge_state(network, edge) };
+    own_law(network, edge, m, at).map_or(f64::INFINITY.copysign(m), |law| law.value)
+}
+
+/// Sign of the change of head by position (head = minus loss).
+fn head_by_position(network: &Network, state: &NetworkState, edge: usize) -> f64 {
+    let (min, max) = limits(network, edge);
+    let (low, high) = (loss_at(network, state, edge, min), loss_at(network, state, edge, max));
+    (low - high).signum()
+}
+
+/// The position with the present flow and the pressure difference `dp`: bisection with secants.
+fn place(network: &Network, state: &NetworkState, edge: usize, dp: f64) -> Place {
+    let (min, max) = limits(network, edge);
+    let miss = |position: f64| loss_at(network, state, edge, position) - dp;
+    let allowed = PRESSURE_PA + RELATIVE * dp.abs();
+    let (mut low, mut high) = (min, max);
+    let (mut low_miss, mut high_miss) = (miss(low), miss(high));
+    if low_miss.abs() <= allowed && high_miss.abs() <= allowed {
+        // Nothing flows and nothing drives: any position will do.
+        return Place::At(state.position[edge].clamp(min, max));
+    }
+    if high_miss.abs() <= allowed {
+        return Place::At(max);
+    }
+    if low_miss.abs() <= allowed {
+        return Place::At(min);
+    }
+    if low_miss.signum() == high_miss.signum() {
+        return if high_miss.abs() < low_miss.abs() { Place::Above } else { Place::Below };
+    }
+    for i in 0..200 {
+        let secant = low - low_miss * (high - low) / (high_miss - low_miss);
+        let inside = secant > low && secant < high && i % 3 != 2;
+        let middle = if inside { secant } else { 0.5 * (low + high) };
+        let middle_miss = miss(middle);
+        if middle_miss == 0.0 || high - low < 1e-15 * max {
+            return Place::At(middle);
+        }
+        if middle_miss.signum() == low_miss.signum() {
+            (low, low_miss) = (middle, middle_miss);
+        } else {
+            (high, high_miss) = (middle, middle_miss);
+        }
+    }
+    Place::At(if low_miss.abs() < high_miss.abs() { low } else { high })
+}
