@@ -121,20 +121,19 @@ impl Reader {
                 Some(unit) => converted(&written, unit),
             };
             let Some(si_value) = si_value else {
+                meant.push(si.to_owned());
                 let message =
                     format!("{what}: {} is too large a number", named(&key.name, &written));
                 self.report(Diagnostic::new(message, value.span.clone()));
                 continue;
             };
+            let si = si.to_owned();
             table.values.insert(si.clone(), si_value.clone());
             let (name, span) = (key.name.clone(), value.span.clone());
             table.fields.push(WrittenField { si, name, value: written, si_value, span });
         }
         for name in &grammar.required {
-            let tried = meant.contains(name)
-                || tree.entries().iter().any(|(key, _)| {
-                    grammar.field(&key.name).is_some_and(|(field, _)| field == *name)
-                });
+            let tried = meant.contains(name) || table.values.contains_key(name);
             if !tried {
                 self.report_missing(what, name, tree.span.clone());
             }
@@ -171,14 +170,18 @@ impl Reader {
             .collect();
         // A known unit of another quantity, or an unknown unit, before a word that looks alike.
         if let Some(field) = grammar.same_quantity(name) {
-            let possible = Grammar::spellings(field).join(", ");
-            self.report(problem.with_hint(format!("wrong unit? possible are {possible}")));
+            let possible = Grammar::spellings(field);
+            let hint = match possible.as_slice() {
+                [only] => format!("write {only}: it has no other unit"),
+                _ => format!("wrong unit? possible are {}", possible.join(", ")),
+            };
+            self.report(problem.with_hint(hint));
             return Some(field.to_owned());
         }
         if let Some(hint) = did_you_mean(name, all.iter().map(String::as_str)) {
             let meant = hint.split('`').nth(1).and_then(|name| grammar.field(name));
             self.report(problem.with_hint(hint));
-            return meant.map(|(field, _)| field);
+            return meant.map(|(field, _)| field.to_owned());
         }
         let known = grammar.fields.iter().map(String::as_str).chain(also.iter().copied());
         let known: Vec<&str> = known.collect();

@@ -7,7 +7,7 @@ use anergy_prosumer::equipment::EquipmentParams;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 use std::any::TypeId;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The fields of one entry, from its JSON Schema.
@@ -17,6 +17,8 @@ pub struct Grammar {
     pub fields: Vec<String>,
     /// Those without a default.
     pub required: Vec<String>,
+    /// Every name a field can be written with: its place in `fields`, and the unit to convert from.
+    spellings: HashMap<String, (usize, Option<Unit>)>,
 }
 
 /// The parameters of a registry: one kind of entry per word of `kind`.
@@ -86,19 +88,31 @@ impl Grammar {
     fn of_schema(schema: &Schema) -> Self {
         let required = schema.get("required").and_then(Value::as_array);
         let required = required.into_iter().flatten().filter_map(Value::as_str);
-        Self { fields: property_names(schema), required: required.map(str::to_owned).collect() }
+        Self::new(property_names(schema), required.map(str::to_owned).collect())
+    }
+
+    fn new(fields: Vec<String>, required: Vec<String>) -> Self {
+        let mut spellings = HashMap::new();
+        for (i, field) in fields.iter().enumerate() {
+            for (name, unit) in alternatives(field) {
+                spellings.entry(name).or_insert((i, Some(unit)));
+            }
+        }
+        // A field's own name is no other field in another unit.
+        spellings.extend(fields.iter().enumerate().map(|(i, field)| (field.clone(), (i, None))));
+        Self { fields, required, spellings }
+    }
+
+    /// The same fields, all of which may be absent.
+    #[must_use]
+    pub fn all_optional(&self) -> Self {
+        Self { required: Vec::new(), ..self.clone() }
     }
 
     /// The SI field that a name in the file means, and the unit to convert from.
-    pub fn field(&self, name: &str) -> Option<(String, Option<Unit>)> {
-        if self.fields.iter().any(|field| field == name) {
-            return Some((name.to_owned(), None));
-        }
-        self.fields.iter().find_map(|field| {
-            alternatives(field)
-                .find(|(alternative, _)| alternative == name)
-                .map(|(_, unit)| (field.clone(), Some(unit)))
-        })
+    pub fn field(&self, name: &str) -> Option<(&str, Option<Unit>)> {
+        let (i, unit) = self.spellings.get(name)?;
+        Some((&self.fields[*i], *unit))
     }
 
     /// All names a field can be written with, SI first.

@@ -163,7 +163,7 @@ impl ModelReader<'_> {
             return self.pipe_types_named_anywhere();
         }
         let whole = Grammar::of::<PipeParams>();
-        let grammar = Grammar { fields: whole.fields.clone(), required: Vec::new() };
+        let grammar = whole.all_optional();
         let mut types = PipeTypes::new();
         for (key, fields) in tree.entries() {
             let what = format!("pipe_type \"{}\"", key.name);
