@@ -25,7 +25,7 @@ def test_problems_of_a_dict_have_no_place(model):
     problems = raised.value.problems
     assert "did you mean `length_m`?" in [problem["hint"] for problem in problems]
     assert all(problem["line"] is None for problem in problems)
-    assert str(raised.value).startswith('edge "sf1-sf2.hot" (pipe): unknown field `lenght_m`')
+    assert str(raised.value).startswith('trench "sf1-sf2": unknown field `lenght_m`')
     assert "    hint: did you mean `length_m`?" in str(raised.value)
 
 

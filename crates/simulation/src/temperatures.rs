@@ -20,6 +20,11 @@ pub(crate) struct Temperatures {
 pub(crate) const WATER: Temperatures =
     Temperatures { low_degc: 0.0, high_degc: 100.0, what: "liquid water" };
 
+/// Water that a schedule, a controller or a program asks for while a run goes on. What boils is refused
+/// by the run, which keeps the rows until then; beyond this it is a mistake of the file.
+pub(crate) const DRIVEN_WATER: Temperatures =
+    Temperatures { low_degc: 0.0, high_degc: 200.0, what: "water" };
+
 /// Ground, air and whatever else a pipe lies in.
 pub(crate) const SURROUNDINGS: Temperatures =
     Temperatures { low_degc: -60.0, high_degc: 200.0, what: "the surroundings" };

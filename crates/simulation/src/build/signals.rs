@@ -6,7 +6,7 @@ use crate::drivers::Driver;
 use crate::model::{ControllerSpec, Place};
 use crate::model_file::NodeEntryKind;
 use crate::plan::{NodeInputs, Plan, PlannedController, PlannedUnit};
-use crate::temperatures::{SURROUNDINGS, Temperatures, WATER};
+use crate::temperatures::{DRIVEN_WATER, SURROUNDINGS, Temperatures, WATER};
 use crate::wording::{in_percent, in_words, refused};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
@@ -44,7 +44,7 @@ impl Builder<'_> {
                 let t_k = exchanges.then(|| {
                     let value = entry.temperature_k.unwrap_or(self.model.run.initial_k);
                     let name = format!("{}.temperature_k", entry.id);
-                    let signal = temperature_signal(&name, value, &WATER);
+                    let signal = temperature_signal(&name, value, &DRIVEN_WATER);
                     self.add_signal(signals, signal, &spec.place)
                 });
                 inputs.push(NodeInputs { node, p_pa, m_flow_kg_s, t_k });
@@ -122,7 +122,7 @@ impl Builder<'_> {
             for input in equipment.inputs() {
                 let name = format!("{}.{}", spec.id, input.name);
                 let signal = if input.unit == "k" && !input.name.contains("difference") {
-                    temperature_signal(&name, input.initial, &WATER)
+                    temperature_signal(&name, input.initial, &DRIVEN_WATER)
                 } else {
                     let (unit, max) = (input.unit, f64::INFINITY);
                     SignalSpec { name, unit, initial: input.initial, min: input.min, max }
