@@ -87,9 +87,11 @@ const WITHOUT_SUFFIX: &[&str] = &[
     // Ratios.
     "alpha",
     "delta_m",
+    "efficiency",
     "efficiency_hydraulic",
     "efficiency_motor",
     "equal_capacity_band",
+    "heat_to_water",
     "kappa",
     "leakage",
     "loss_factor",

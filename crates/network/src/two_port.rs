@@ -124,6 +124,11 @@ pub trait TwoPort {
         None
     }
 
+    /// Heat that the element itself gives to the water passing it, W: losses of a pump.
+    fn heat_to_water_w(&self, _m_flow_kg_s: f64, _state: &EdgeState) -> f64 {
+        0.0
+    }
+
     /// What the author of the model should know of this element, for example how its curve had to be
     /// changed.
     fn note(&self) -> Option<&str> {

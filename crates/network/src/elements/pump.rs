@@ -5,7 +5,8 @@
 //! power law `H = H0 - H0 (V/V_free)^n`, odd in the flow, straight beyond `+-V_free`; a table of points
 //! with monotone interpolation; or a polynomial `H = sum c_i V^i` up to its first zero. The last two are
 //! continued linearly beyond their end and by `H0 + s|V| + a V^2` for reverse flow. Power
-//! `P = V dp/(eta_h eta_m)` for pumping flow, plus standby.
+//! `P = V dp/eta` for pumping flow, plus standby, with `eta = eta_h eta_m` or a table `eta(V/u)`; the
+//! water takes up the heat `max(f P - V dp, 0)` in the pump (without the standby power).
 //!
 //! **Assumptions** at rest the impeller is an orifice of the curve's curvature. Where a table or
 //! polynomial does not fall, the nearest falling curve is taken and said so, up to 10 % of H0.
@@ -18,12 +19,14 @@
 //! **Sources** `licklederer2021`, `wetter2014`, `elizarov2021` (rise time).
 
 mod curve;
+mod efficiency;
 
 use crate::two_port::{
     Actuator, Characteristic, EdgeState, ElementError, TwoPort, not_negative, positive, ratio,
 };
 use anergy_core::medium::Medium;
 use curve::HeadCurve;
+use efficiency::Efficiency;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,6 +77,16 @@ pub struct PumpParams {
     /// Motor efficiency.
     #[serde(default = "default_efficiency")]
     pub efficiency_motor: f64,
+    /// Flows of the efficiency table at full speed, m3/s.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub efficiency_v_flow_m3_s: Vec<f64>,
+    /// Overall efficiencies of the table, from wire to water, instead of the two constants.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub efficiency: Vec<f64>,
+    /// Share of the electric power that ends in the water: 1 for a wet rotor, `efficiency_motor` for a
+    /// dry motor in the open.
+    #[serde(default = "one")]
+    pub heat_to_water: f64,
     /// Electric power while off, W.
     #[serde(default)]
     pub standby_w: f64,
@@ -116,6 +129,9 @@ impl Default for PumpParams {
             rise_time_s: default_rise_time(),
             efficiency_hydraulic: default_efficiency(),
             efficiency_motor: default_efficiency(),
+            efficiency_v_flow_m3_s: Vec::new(),
+            efficiency: Vec::new(),
+            heat_to_water: one(),
             standby_w: 0.0,
             delta_m: default_delta_m(),
         }
@@ -126,7 +142,8 @@ impl Default for PumpParams {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pump {
     curve: HeadCurve,
-    efficiency: f64,
+    efficiency: Efficiency,
+    heat_to_water: f64,
     standby_w: f64,
     actuator: Actuator,
     speed_min: f64,
@@ -154,14 +171,10 @@ impl PumpParams {
                 });
             }
         }
-        let efficiency =
-            positive(
-                "efficiency_hydraulic",
-                ratio("efficiency_hydraulic", self.efficiency_hydraulic)?,
-            )? * positive("efficiency_motor", ratio("efficiency_motor", self.efficiency_motor)?)?;
         Ok(Pump {
             curve,
-            efficiency,
+            efficiency: self.overall_efficiency()?,
+            heat_to_water: ratio("heat_to_water", self.heat_to_water)?,
             standby_w: not_negative("standby_w", self.standby_w)?,
             actuator: Actuator {
                 position: "speed",
@@ -184,6 +197,17 @@ impl Pump {
     /// its limits.
     pub fn speed_at(&self, m_flow_kg_s: f64, dp_pa: f64, density_kg_m3: f64) -> f64 {
         self.curve.speed_at(m_flow_kg_s, dp_pa, density_kg_m3, self.speed_max)
+    }
+
+    /// Hydraulic power, W, zero where the pump is off or a resistance, and the efficiency.
+    fn pumping(&self, m: f64, state: &EdgeState) -> (f64, f64) {
+        let (speed, v) = (state.position, m / state.density_kg_m3);
+        let head = -self.curve.loss(m, speed, state.density_kg_m3).value;
+        if speed > 0.0 && m > 0.0 && head > 0.0 {
+            (v * head, self.efficiency.at(v / speed))
+        } else {
+            (0.0, 1.0)
+        }
     }
 }
 
@@ -210,10 +234,13 @@ impl TwoPort for Pump {
     }
 
     fn electric_power_w(&self, m: f64, state: &EdgeState) -> Option<f64> {
-        let head = -self.curve.loss(m, state.position, state.density_kg_m3).value;
-        let hydraulic = m / state.density_kg_m3 * head;
-        let pumping = state.position > 0.0 && m > 0.0 && head > 0.0;
-        Some(self.standby_w + if pumping { hydraulic / self.efficiency } else { 0.0 })
+        let (hydraulic_w, efficiency) = self.pumping(m, state);
+        Some(self.standby_w + hydraulic_w / efficiency)
+    }
+
+    fn heat_to_water_w(&self, m: f64, state: &EdgeState) -> f64 {
+        let (hydraulic_w, efficiency) = self.pumping(m, state);
+        (self.heat_to_water * hydraulic_w / efficiency - hydraulic_w).max(0.0)
     }
 }
 
@@ -259,6 +286,33 @@ mod tests {
             assert!((power(0.3, 1.0) / (3e-4 * full / 0.49) - 1.0).abs() < 1e-12);
             assert_eq!(power(0.1, 0.0), 0.0);
         }
+    }
+
+    #[test]
+    fn efficiency_follows_the_flow_and_the_losses_heat_the_water() {
+        let params = PumpParams {
+            efficiency_v_flow_m3_s: vec![0.0, 4e-4, 9e-4],
+            efficiency: vec![0.0, 0.4, 0.2],
+            standby_w: 3.0,
+            ..PumpParams::default()
+        };
+        let pump = params.build(&Medium::default()).unwrap();
+        // 0.4 l/s at full speed: H = 40221 - 4.72972e4 * 0.16 = 32653.4 Pa, V H = 13.06138 W,
+        // P = 32.65344 W + 3 W; the water gets 32.65344 - 13.06138 = 19.59206 W.
+        assert!((pump.electric_power_w(0.4, &state(1.0)).unwrap() - 35.65344).abs() < 1e-3);
+        assert!((pump.heat_to_water_w(0.4, &state(1.0)) - 19.59206).abs() < 1e-3);
+        // Half speed at half the flow has the same efficiency and an eighth of the power.
+        let running = pump.electric_power_w(0.2, &state(0.5)).unwrap() - 3.0;
+        assert!((running - 32.65344 / 8.0).abs() < 1e-3);
+        // Off, or driven backwards, nothing but the standby power, and no heat.
+        assert_eq!(pump.electric_power_w(0.2, &state(0.0)), Some(3.0));
+        assert_eq!(pump.heat_to_water_w(-0.2, &state(1.0)), 0.0);
+        // A dry motor, eta_m = 0.7 of 0.49: 0.7 P - V H = V H (0.7/0.49 - 1)
+        let dry = PumpParams { heat_to_water: 0.7, ..PumpParams::default() };
+        let dry = dry.build(&Medium::default()).unwrap();
+        assert!((dry.heat_to_water_w(0.4, &state(1.0)) - 13.06138 * 0.428_571).abs() < 1e-3);
+        let params = PumpParams { efficiency: vec![70.0, 60.0, 50.0], ..params };
+        assert_eq!(params.build(&Medium::default()).unwrap_err().field(), Some("efficiency"));
     }
 
     #[test]
