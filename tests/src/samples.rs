@@ -9,7 +9,7 @@ use anergy_network::elements::flow_source::FlowSourceParams;
 use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::pressure_source::PressureSourceParams;
-use anergy_network::elements::pump::PumpParams;
+use anergy_network::elements::pump::{PumpMode, PumpParams};
 use anergy_network::elements::resistance::ResistanceParams;
 use anergy_network::elements::valve::{ValveCharacteristic, ValveCommand, ValveParams};
 use anergy_network::friction::{Correlation, Transition};
@@ -46,9 +46,7 @@ pub fn nature(params: &ElementParams) -> Nature {
 pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
     match kind {
         "pipe" => pipe().prop_map(ElementParams::Pipe).boxed(),
-        "pump" => prop_oneof![formula_pump(), table_pump(), polynomial_pump()]
-            .prop_map(ElementParams::Pump)
-            .boxed(),
+        "pump" => pump().prop_map(ElementParams::Pump).boxed(),
         "valve" => valve().prop_map(ElementParams::Valve).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
@@ -107,6 +105,33 @@ fn pipe() -> impl Strategy<Value = PipeParams> {
             }
         },
     )
+}
+
+/// A pump with any curve in any mode.
+fn pump() -> impl Strategy<Value = PumpParams> {
+    let curve = prop_oneof![formula_pump(), table_pump(), polynomial_pump()];
+    let mode = prop_oneof![
+        2 => Just(PumpMode::Speed),
+        1 => Just(PumpMode::Flow),
+        1 => Just(PumpMode::Head)
+    ];
+    (curve, mode, 0.0..0.9).prop_map(|(pump, mode, share): (_, _, f64)| {
+        if mode == PumpMode::Speed {
+            return pump;
+        }
+        let still = PumpParams { mode, speed: 0.0, initial_speed: 0.0, speed_min: 0.0, ..pump };
+        match mode {
+            PumpMode::Head => {
+                let head_pa = still.head_max_pa.map(|head| share * head);
+                PumpParams { head_pa, ..still }
+            }
+            _ => {
+                // Whatever the density of the medium.
+                let flow = still.free_flow_m3_s.map(|flow| share * 965.0 * flow);
+                PumpParams { m_flow_set_kg_s: flow, ..still }
+            }
+        }
+    })
 }
 
 /// A quadratic curve or a power law.

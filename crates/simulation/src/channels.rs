@@ -22,6 +22,8 @@ pub enum Source {
     EdgePressure(usize),
     /// Actuator position of an edge.
     EdgePosition(usize),
+    /// Speed of a pump: commanded, or what holds its set value.
+    PumpSpeed(usize),
     /// Electric power of an edge, W.
     EdgePower(usize),
     /// Temperature at an end of a pipe, K.
@@ -160,7 +162,7 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
     list.add(group, name, "dp_pa", "Pa", Source::EdgePressure(i));
     match element {
         Element::Pump(_) => {
-            list.add(group, name, "speed", "1", Source::EdgePosition(i));
+            list.add(group, name, "speed", "1", Source::PumpSpeed(i));
             list.add(group, name, "power_w", "W", Source::EdgePower(i));
         }
         Element::Valve(_) => list.add(group, name, "opening", "1", Source::EdgePosition(i)),
@@ -199,6 +201,12 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::EdgeFlow(i) => network.m_flow_kg_s[i],
         Source::EdgePressure(i) => network.dp_pa(&plan.network, i),
         Source::EdgePosition(i) => network.position[i],
+        Source::PumpSpeed(i) => match &plan.network.edges[i].element {
+            Element::Pump(pump) => {
+                pump.speed(network.m_flow_kg_s[i], &network.edge_state(&plan.network, i))
+            }
+            _ => network.position[i],
+        },
         Source::EdgePower(i) => plan.electric_w(network, i),
         Source::PipeEnd(i, port) => network.parcels.end_k(i, port).unwrap_or(f64::NAN),
         Source::EdgeLoss(i) => network.q_loss_w[i],

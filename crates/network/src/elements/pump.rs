@@ -1,4 +1,5 @@
-//! A speed-controlled circulation pump: affinity laws on a head curve, actuator lag, electric power.
+//! A circulation pump that holds a speed, a flow or a head: affinity laws on a head curve, actuator lag,
+//! electric power.
 //!
 //! **Equation** at relative speed u and `V = m/rho`: `p_b - p_a = u^2 H(V/u)`. The curve H at full speed
 //! is one of: quadratic `H = H0 - a V|V|` with `a = H0/V_free^2`, so `p_a - p_b = -u^2 H0 + a V|V|`;
@@ -7,6 +8,9 @@
 //! continued linearly beyond their end and by `H0 + s|V| + a V^2` for reverse flow. Power
 //! `P = V dp/eta` for pumping flow, plus standby, with `eta = eta_h eta_m` or a table `eta(V/u)`; the
 //! water takes up the heat `max(f P - V dp, 0)` in the pump (without the standby power).
+//!
+//! With `mode = "flow"` or `"head"` the pump chooses the speed that holds its set value, up to the full
+//! one and down to standstill: a median of three rising laws (`mode.rs`).
 //!
 //! **Assumptions** at rest the impeller is an orifice of the curve's curvature. Where a table or
 //! polynomial does not fall, the nearest falling curve is taken and said so, up to 10 % of H0.
@@ -20,10 +24,14 @@
 
 mod curve;
 mod efficiency;
+mod mode;
+
+pub use mode::PumpMode;
 
 use crate::two_port::{
     Actuator, Characteristic, EdgeState, ElementError, TwoPort, not_negative, positive, ratio,
 };
+use anergy_core::linear::Linear;
 use anergy_core::medium::Medium;
 use curve::HeadCurve;
 use efficiency::Efficiency;
@@ -56,6 +64,15 @@ pub struct PumpParams {
     /// Largest flow of the polynomial, m3/s. Absent: where its head becomes zero.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve_v_flow_max_m3_s: Option<f64>,
+    /// What the pump holds and its command means.
+    #[serde(default)]
+    pub mode: PumpMode,
+    /// Mass flow commanded while nothing else drives it, kg/s, with `mode = "flow"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub m_flow_set_kg_s: Option<f64>,
+    /// Head commanded while nothing else drives it, Pa, with `mode = "head"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub head_pa: Option<f64>,
     /// Relative speed commanded while nothing else drives it.
     #[serde(default)]
     pub speed: f64,
@@ -68,7 +85,7 @@ pub struct PumpParams {
     /// Largest relative speed.
     #[serde(default = "one")]
     pub speed_max: f64,
-    /// Time in which the speed follows a step by 99.6 %, s.
+    /// Time in which the speed, or what else is commanded, follows a step by 99.6 %, s.
     #[serde(default = "default_rise_time")]
     pub rise_time_s: f64,
     /// Hydraulic efficiency.
@@ -122,6 +139,9 @@ impl Default for PumpParams {
             curve_head_pa: Vec::new(),
             curve_polynomial: Vec::new(),
             curve_v_flow_max_m3_s: None,
+            mode: PumpMode::default(),
+            m_flow_set_kg_s: None,
+            head_pa: None,
             speed: 0.0,
             initial_speed: 0.0,
             speed_min: 0.0,
@@ -142,6 +162,7 @@ impl Default for PumpParams {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pump {
     curve: HeadCurve,
+    mode: PumpMode,
     efficiency: Efficiency,
     heat_to_water: f64,
     standby_w: f64,
@@ -158,36 +179,83 @@ impl PumpParams {
     pub fn build(&self, medium: &Medium) -> Result<Pump, ElementError> {
         let curve = self.head_curve(medium.density_kg_m3)?;
         let speed_max = positive("speed_max", self.speed_max)?;
-        for (field, value) in [
-            ("speed", self.speed),
-            ("initial_speed", self.initial_speed),
-            ("speed_min", self.speed_min),
-        ] {
-            if !(0.0..=speed_max).contains(&value) {
-                return Err(ElementError::OutOfRange {
-                    field,
-                    value,
-                    requirement: "must lie between 0 and speed_max",
-                });
-            }
-        }
+        let actuator = self.actuator(&curve, speed_max)?;
         Ok(Pump {
             curve,
+            mode: self.mode,
             efficiency: self.overall_efficiency()?,
             heat_to_water: ratio("heat_to_water", self.heat_to_water)?,
             standby_w: not_negative("standby_w", self.standby_w)?,
-            actuator: Actuator {
-                position: "speed",
-                command: "speed",
-                unit: "",
-                initial_command: self.speed,
-                initial_position: self.initial_speed,
-                rise_time_s: not_negative("rise_time_s", self.rise_time_s)?,
-                min: 0.0,
-                max: speed_max,
-            },
+            actuator,
             speed_min: self.speed_min,
             speed_max,
+        })
+    }
+
+    /// What is commanded: the speed, or the flow or head up to what the curve has at full speed. Only a
+    /// speed starts elsewhere than where its command leads.
+    fn actuator(&self, curve: &HeadCurve, speed_max: f64) -> Result<Actuator, ElementError> {
+        let within = |field, value, max, requirement| {
+            if (0.0..=max).contains(&value) {
+                Ok(value)
+            } else {
+                Err(ElementError::OutOfRange { field, value, requirement })
+            }
+        };
+        let mut speeds = [0.0; 3];
+        for (i, (field, value)) in [
+            ("speed", self.speed),
+            ("initial_speed", self.initial_speed),
+            ("speed_min", self.speed_min),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            speeds[i] = within(field, value, speed_max, "must lie between 0 and speed_max")?;
+        }
+        let (position, unit, max) = match self.mode {
+            PumpMode::Speed => ("speed", "", speed_max),
+            PumpMode::Flow => ("m_flow_set_kg_s", "kg_s", speed_max * curve.m_free_kg_s),
+            PumpMode::Head => ("head_pa", "pa", speed_max * speed_max * curve.head_max_pa),
+        };
+        let foreign = [
+            (
+                "speed, initial_speed and speed_min",
+                speeds.iter().any(|&s| s != 0.0),
+                PumpMode::Speed,
+            ),
+            ("m_flow_set_kg_s", self.m_flow_set_kg_s.is_some(), PumpMode::Flow),
+            ("head_pa", self.head_pa.is_some(), PumpMode::Head),
+        ];
+        if let Some((fields, ..)) =
+            foreign.iter().find(|(_, given, mode)| *given && *mode != self.mode)
+        {
+            return Err(ElementError::Fields {
+                problem: format!("{fields} given, but by its mode this pump holds {position}"),
+            });
+        }
+        let requirement = "must lie between 0 and what the curve has at full speed";
+        let initial_command = match self.mode {
+            PumpMode::Speed => self.speed,
+            PumpMode::Flow => {
+                within("m_flow_set_kg_s", self.m_flow_set_kg_s.unwrap_or(0.0), max, requirement)?
+            }
+            PumpMode::Head => within("head_pa", self.head_pa.unwrap_or(0.0), max, requirement)?,
+        };
+        let starts_at_its_command = self.mode != PumpMode::Speed;
+        Ok(Actuator {
+            position,
+            command: position,
+            unit,
+            initial_command,
+            initial_position: if starts_at_its_command {
+                initial_command
+            } else {
+                self.initial_speed
+            },
+            rise_time_s: not_negative("rise_time_s", self.rise_time_s)?,
+            min: 0.0,
+            max,
         })
     }
 }
@@ -199,21 +267,35 @@ impl Pump {
         self.curve.speed_at(m_flow_kg_s, dp_pa, density_kg_m3, self.speed_max)
     }
 
+    /// The relative speed at a flow: commanded, or what the mode leads to.
+    pub fn speed(&self, m_flow_kg_s: f64, state: &EdgeState) -> f64 {
+        match self.mode {
+            PumpMode::Speed => state.position,
+            PumpMode::Flow | PumpMode::Head => {
+                let dp_pa = self.loss(m_flow_kg_s, state).value;
+                self.speed_at(m_flow_kg_s, dp_pa, state.density_kg_m3)
+            }
+        }
+    }
+
+    fn loss(&self, m: f64, state: &EdgeState) -> Linear {
+        self.mode.loss(&self.curve, m, state.position, state.density_kg_m3, self.speed_max)
+    }
+
     /// Hydraulic power, W, zero where the pump is off or a resistance, and the efficiency.
     fn pumping(&self, m: f64, state: &EdgeState) -> (f64, f64) {
-        let (speed, v) = (state.position, m / state.density_kg_m3);
-        let head = -self.curve.loss(m, speed, state.density_kg_m3).value;
-        if speed > 0.0 && m > 0.0 && head > 0.0 {
-            (v * head, self.efficiency.at(v / speed))
-        } else {
-            (0.0, 1.0)
+        let (head, v) = (-self.loss(m, state).value, m / state.density_kg_m3);
+        if m <= 0.0 || head <= 0.0 {
+            return (0.0, 1.0);
         }
+        let speed = self.speed(m, state);
+        if speed > 0.0 { (v * head, self.efficiency.at(v / speed)) } else { (0.0, 1.0) }
     }
 }
 
 impl TwoPort for Pump {
     fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
-        Characteristic::PressureLoss(self.curve.loss(m, state.position, state.density_kg_m3))
+        Characteristic::PressureLoss(self.loss(m, state))
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {
@@ -225,8 +307,8 @@ impl TwoPort for Pump {
     }
 
     fn target_position(&self, command: f64) -> f64 {
-        let speed = command.clamp(0.0, self.actuator.max);
-        if speed < self.speed_min { 0.0 } else { speed }
+        let target = command.clamp(0.0, self.actuator.max);
+        if self.mode == PumpMode::Speed && target < self.speed_min { 0.0 } else { target }
     }
 
     fn note(&self) -> Option<&str> {
@@ -443,5 +525,67 @@ mod tests {
             assert_eq!(pump.speed_at(0.05, -1e9, 1000.0), 1.0);
             assert_eq!(pump.speed_at(0.05, 1e9, 1000.0), 0.0);
         }
+    }
+
+    /// The published pump in a mode, at full speed 402.21 hPa and 0.9222 kg/s.
+    fn in_mode(mode: PumpMode) -> Pump {
+        PumpParams { mode, ..PumpParams::default() }.build(&Medium::default()).unwrap()
+    }
+
+    #[test]
+    fn a_flow_is_held_while_the_speed_allows_it() {
+        let pump = in_mode(PumpMode::Flow);
+        let set = state(0.4);
+        let head = |m: f64| -pump.loss(m, &set).value;
+        // Any head between rest (-4.72972e4 * 0.16 = -7567.5 Pa) and full speed (32653.5 Pa) belongs to
+        // the set flow within 1e-4.
+        assert!(head(0.4 * (1.0 - 1e-4)) > 30_000.0 && head(0.4 * (1.0 + 1e-4)) < -7_000.0);
+        assert!(head(0.4).abs() < 1.0);
+        // Away from it the pump is at full speed or at rest: at 0.3 kg/s 40221 - 4256.7 = 35964.3 Pa,
+        // at 0.5 kg/s -11824.3 Pa.
+        assert!((head(0.3) - 35_964.3).abs() < 0.1, "{}", head(0.3));
+        assert!((head(0.5) + 11_824.3).abs() < 0.1, "{}", head(0.5));
+        assert!((pump.speed(0.3, &set) - 1.0).abs() < 1e-6);
+        assert!(pump.speed(0.5, &set) < 1e-3);
+        // Half way, head 0 at 0.4 kg/s: u^2 H0 = 7567.5 Pa, u = 0.43377.
+        assert!((pump.speed(0.4, &set) - 0.43377).abs() < 1e-4);
+        // P = V H/0.49 at the head where the pump really is: 20 kPa belongs to 0.39998 kg/s.
+        let m = 0.4 * (1.0 - 1e-4 * 20_000.0 / 40_221.0);
+        assert!((pump.electric_power_w(m, &set).unwrap() - 4e-4 * 20_000.0 / 0.49).abs() < 0.01);
+        // Off, it is at rest.
+        assert_eq!(pump.loss(0.0, &state(0.0)).value, 0.0);
+        assert_eq!(pump.loss(0.2, &state(0.0)), pump.curve.loss(0.2, 0.0, 1000.0));
+    }
+
+    #[test]
+    fn a_head_is_held_while_the_speed_allows_it() {
+        let pump = in_mode(PumpMode::Head);
+        let set = state(20_000.0);
+        let head = |m: f64| -pump.loss(m, &set).value;
+        // Droop 1e-3 * 20 kPa at 0.46108 kg/s: 20000 - 0.3/0.46108 * 20 = 19986.99 Pa
+        assert!((head(0.3) - 19_986.99).abs() < 0.1, "{}", head(0.3));
+        // u^2 H0 = 19986.99 + 4256.7 Pa: u = 0.77638
+        assert!((pump.speed(0.3, &set) - 0.77638).abs() < 1e-4);
+        // Full speed has 40221 - 4.72972e4 * 0.49 = 17045.4 Pa at 0.7 kg/s.
+        assert!((head(0.7) - 17_045.4).abs() < 0.2, "{}", head(0.7));
+        // Reverse flow: at rest it is resisted by 20 kPa at -0.65028 kg/s, so at -0.8 kg/s the pump
+        // stands still, 30270.2 Pa.
+        assert!((head(-0.8) - 30_270.2).abs() < 0.2, "{}", head(-0.8));
+        assert!(pump.speed(-0.8, &set) < 1e-3);
+        assert_eq!(pump.target_position(1e6), 40_221.0);
+    }
+
+    #[test]
+    fn set_values_of_another_mode_are_refused() {
+        let params =
+            PumpParams { mode: PumpMode::Flow, head_pa: Some(1e4), ..PumpParams::default() };
+        let error = params.build(&Medium::default()).unwrap_err().to_string();
+        assert_eq!(error, "head_pa given, but by its mode this pump holds m_flow_set_kg_s");
+        let params = PumpParams {
+            mode: PumpMode::Flow,
+            m_flow_set_kg_s: Some(5.0),
+            ..PumpParams::default()
+        };
+        assert_eq!(params.build(&Medium::default()).unwrap_err().field(), Some("m_flow_set_kg_s"));
     }
 }

@@ -1,0 +1,78 @@
+//! What a pump does with its set value: run at a speed, or choose the speed up to the full one that
+//! holds a flow or a head.
+//!
+//! **Equation** A pump that controls itself can be anywhere between standstill, `R(m)`, and full speed,
+//! `F(m) < R(m)` (both `p_a - p_b`). Its law is the median of the two and of the line `S(m)` that holds
+//! the set value, `max(F, min(S, R))`: on the line where the speed for it exists, else at full speed or
+//! at rest. All three rise, so the law does, and saturation is no status that could flicker. Flow:
+//! `S = k (m - m_set)` with `k = u_max^2 H0/(1e-4 m_set)`. Head: `S = -h_set + k m` with a droop of 1e-3
+//! of the head at the nominal flow, so that two such pumps in parallel share the flow.
+//!
+//! **Numerics** maximum and minimum are rounded within 1e-3 of the head at zero flow. A set value of
+//! zero is a pump at rest; up to 1e-3 of the nominal flow or head the available speed rises linearly.
+
+use super::curve::HeadCurve;
+use anergy_core::linear::Linear;
+use anergy_core::numerics::regularize::{smooth_max, smooth_min};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Deviation from the set flow between standstill and full speed, relative to it.
+const FLOW_BAND: f64 = 1e-4;
+/// The band is that of this share of the nominal flow, at least.
+const LEAST_FLOW: f64 = 1e-2;
+/// Fall of a held head up to the nominal flow, relative to it.
+const DROOP: f64 = 1e-3;
+/// The droop is that of this share of the head at zero flow, at least.
+const LEAST_HEAD: f64 = 1e-2;
+/// Below this share of the nominal flow or the head at zero flow the pump is being switched off.
+const SWITCHED_OFF: f64 = 1e-3;
+/// Rounding of the joints relative to the head at zero flow and the available speed.
+const ROUNDING: f64 = 1e-3;
+
+/// What the command of a pump means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PumpMode {
+    /// The relative speed.
+    #[default]
+    Speed,
+    /// The mass flow, within what the curve at full speed allows.
+    Flow,
+    /// The head, within what the curve at full speed allows.
+    Head,
+}
+
+impl PumpMode {
+    /// `p_a - p_b` at a position: speed, flow in kg/s or head in Pa.
+    pub(super) fn loss(
+        self,
+        curve: &HeadCurve,
+        m: f64,
+        position: f64,
+        density: f64,
+        speed_max: f64,
+    ) -> Linear {
+        let m_nominal = 0.5 * curve.m_free_kg_s;
+        let head_max_pa = speed_max * speed_max * curve.head_max_pa;
+        let (held, share) = match self {
+            Self::Speed => return curve.loss(m, position, density),
+            Self::Flow => {
+                let slope = head_max_pa / (FLOW_BAND * position.max(LEAST_FLOW * m_nominal));
+                (Linear::new(slope * (m - position), slope), position / m_nominal)
+            }
+            Self::Head => {
+                let slope = DROOP * position.max(LEAST_HEAD * head_max_pa) / m_nominal;
+                (Linear::new(slope * m - position, slope), position / head_max_pa)
+            }
+        };
+        let available = (share / SWITCHED_OFF).clamp(0.0, 1.0);
+        let rest = curve.loss(m, 0.0, density);
+        if available == 0.0 {
+            return rest;
+        }
+        let rounding = ROUNDING * available * available * head_max_pa;
+        let full = curve.loss(m, available * speed_max, density);
+        smooth_max(full, smooth_min(held, rest, rounding), rounding)
+    }
+}
