@@ -9,7 +9,9 @@
 //! of the head at the nominal flow, so that two such pumps in parallel share the flow.
 //!
 //! **Numerics** maximum and minimum are rounded within 1e-3 of the head at zero flow. A set value of
-//! zero is a pump at rest; up to 1e-3 of the nominal flow or head the available speed rises linearly.
+//! zero is a pump at rest; up to 1e-3 of the nominal flow or head the available speed rises linearly. The
+//! corners are sharper than a Newton step can foresee: several such pumps that change their side together
+//! take one or two iterations each.
 
 use super::curve::HeadCurve;
 use anergy_core::linear::Linear;
