@@ -95,6 +95,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "kappa",
     "leakage",
     "loss_factor",
+    "open",
     "opening",
     "initial_opening",
     "rangeability",

@@ -4,6 +4,7 @@
 //! in [`nature`] (or nothing compiles).
 
 use anergy_network::elements::ElementParams;
+use anergy_network::elements::ball_valve::BallValveParams;
 use anergy_network::elements::check_valve::CheckValveParams;
 use anergy_network::elements::flow_source::FlowSourceParams;
 use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
@@ -30,6 +31,7 @@ pub fn nature(params: &ElementParams) -> Nature {
     match params {
         ElementParams::Pipe(_)
         | ElementParams::Valve(_)
+        | ElementParams::BallValve(_)
         | ElementParams::Resistance(_)
         | ElementParams::HeatExchanger(_) => Nature::Symmetric,
         ElementParams::Pump(_)
@@ -48,6 +50,7 @@ pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
         "pipe" => pipe().prop_map(ElementParams::Pipe).boxed(),
         "pump" => pump().prop_map(ElementParams::Pump).boxed(),
         "valve" => valve().prop_map(ElementParams::Valve).boxed(),
+        "ball_valve" => ball_valve().prop_map(ElementParams::BallValve).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
         "heat_exchanger" => heat_exchanger().prop_map(ElementParams::HeatExchanger).boxed(),
@@ -289,6 +292,23 @@ fn rising_to_1() -> impl Strategy<Value = Vec<f64>> {
 /// Flow at 0.1 bar of a valve of a Kv value, kg/s.
 fn at_a_tenth_of_a_bar_kg_s(kv_m3_h: f64) -> f64 {
     kv_m3_h / 3.6 * 0.1_f64.sqrt()
+}
+
+fn ball_valve() -> impl Strategy<Value = BallValveParams> {
+    let initial = option::of(0.0..1.0);
+    let numbers = (logarithmic(1e-5, 0.1), any::<bool>(), initial, 0.0..60.0, 0.005..0.3);
+    (logarithmic(0.1, 1000.0), numbers).prop_map(|(kvs_m3_h, n)| {
+        let (leakage, open, initial_opening, stroke_time_s, delta_m) = n;
+        BallValveParams {
+            kvs_m3_h,
+            leakage,
+            open: f64::from(u8::from(open)),
+            initial_opening,
+            stroke_time_s,
+            m_flow_nominal_kg_s: None,
+            delta_m,
+        }
+    })
 }
 
 fn check_valve() -> impl Strategy<Value = CheckValveParams> {

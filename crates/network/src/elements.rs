@@ -1,5 +1,6 @@
 //! REGISTRY of the hydraulic elements: adding one is one file, its `mod` line and its line below.
 
+pub mod ball_valve;
 pub mod check_valve;
 pub mod flow_source;
 pub mod heat_exchanger;
@@ -18,6 +19,7 @@ anergy_core::registry! {
         Pipe("pipe", pipe::Pipe, pipe::PipeParams),
         Pump("pump", pump::Pump, pump::PumpParams),
         Valve("valve", valve::Valve, valve::ValveParams),
+        BallValve("ball_valve", ball_valve::BallValve, ball_valve::BallValveParams),
         CheckValve("check_valve", check_valve::CheckValve, check_valve::CheckValveParams),
         Resistance("resistance", resistance::Resistance, resistance::ResistanceParams),
         HeatExchanger("heat_exchanger", heat_exchanger::HeatExchanger, heat_exchanger::HeatExchangerParams),

@@ -165,7 +165,7 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
             list.add(group, name, "speed", "1", Source::PumpSpeed(i));
             list.add(group, name, "power_w", "W", Source::EdgePower(i));
         }
-        Element::Valve(_) => list.add(group, name, "opening", "1", Source::EdgePosition(i)),
+        Element::Valve(_) | Element::BallValve(_) => list.add(group, name, "opening", "1", Source::EdgePosition(i)),
         Element::Pipe(_) => {
             list.add(group, name, "t_a_k", "K", Source::PipeEnd(i, Port::A));
             list.add(group, name, "t_b_k", "K", Source::PipeEnd(i, Port::B));
