@@ -8,6 +8,7 @@ use anergy_network::elements::ball_valve::BallValveParams;
 use anergy_network::elements::check_valve::CheckValveParams;
 use anergy_network::elements::flow_source::FlowSourceParams;
 use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
+use anergy_network::elements::overflow_valve::OverflowValveParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::pressure_source::PressureSourceParams;
 use anergy_network::elements::pump::{PumpMode, PumpParams};
@@ -36,6 +37,7 @@ pub fn nature(params: &ElementParams) -> Nature {
         | ElementParams::HeatExchanger(_) => Nature::Symmetric,
         ElementParams::Pump(_)
         | ElementParams::CheckValve(_)
+        | ElementParams::OverflowValve(_)
         | ElementParams::FlowSource(_)
         | ElementParams::PressureSource(_) => Nature::Directed,
     }
@@ -51,6 +53,7 @@ pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
         "pump" => pump().prop_map(ElementParams::Pump).boxed(),
         "valve" => valve().prop_map(ElementParams::Valve).boxed(),
         "ball_valve" => ball_valve().prop_map(ElementParams::BallValve).boxed(),
+        "overflow_valve" => overflow_valve().prop_map(ElementParams::OverflowValve).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
         "heat_exchanger" => heat_exchanger().prop_map(ElementParams::HeatExchanger).boxed(),
@@ -317,6 +320,19 @@ fn check_valve() -> impl Strategy<Value = CheckValveParams> {
             kvs_m3_h,
             leakage,
             m_flow_nominal_kg_s: nominal * at_a_tenth_of_a_bar_kg_s(kvs_m3_h),
+            delta_m,
+        },
+    )
+}
+
+fn overflow_valve() -> impl Strategy<Value = OverflowValveParams> {
+    let numbers = (option::of(0.01..1.0), logarithmic(1e-5, 0.4), 0.005..0.1);
+    (logarithmic(0.1, 1000.0), logarithmic(1e3, 1e6), numbers).prop_map(
+        |(kvs_m3_h, opening_dp_pa, (band, leakage, delta_m))| OverflowValveParams {
+            kvs_m3_h,
+            opening_dp_pa,
+            band_dp_pa: band.map(|share: f64| share * opening_dp_pa),
+            leakage,
             delta_m,
         },
     )

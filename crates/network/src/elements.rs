@@ -4,6 +4,7 @@ pub mod ball_valve;
 pub mod check_valve;
 pub mod flow_source;
 pub mod heat_exchanger;
+pub mod overflow_valve;
 pub mod pipe;
 pub mod pressure_source;
 pub mod pump;
@@ -20,6 +21,7 @@ anergy_core::registry! {
         Pump("pump", pump::Pump, pump::PumpParams),
         Valve("valve", valve::Valve, valve::ValveParams),
         BallValve("ball_valve", ball_valve::BallValve, ball_valve::BallValveParams),
+        OverflowValve("overflow_valve", overflow_valve::OverflowValve, overflow_valve::OverflowValveParams),
         CheckValve("check_valve", check_valve::CheckValve, check_valve::CheckValveParams),
         Resistance("resistance", resistance::Resistance, resistance::ResistanceParams),
         HeatExchanger("heat_exchanger", heat_exchanger::HeatExchanger, heat_exchanger::HeatExchangerParams),
