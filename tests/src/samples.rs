@@ -6,6 +6,7 @@
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::ball_valve::BallValveParams;
 use anergy_network::elements::check_valve::CheckValveParams;
+use anergy_network::elements::flow_limiter::FlowLimiterParams;
 use anergy_network::elements::flow_source::FlowSourceParams;
 use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
 use anergy_network::elements::overflow_valve::OverflowValveParams;
@@ -37,6 +38,7 @@ pub fn nature(params: &ElementParams) -> Nature {
         | ElementParams::HeatExchanger(_) => Nature::Symmetric,
         ElementParams::Pump(_)
         | ElementParams::CheckValve(_)
+        | ElementParams::FlowLimiter(_)
         | ElementParams::OverflowValve(_)
         | ElementParams::FlowSource(_)
         | ElementParams::PressureSource(_) => Nature::Directed,
@@ -54,6 +56,7 @@ pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
         "valve" => valve().prop_map(ElementParams::Valve).boxed(),
         "ball_valve" => ball_valve().prop_map(ElementParams::BallValve).boxed(),
         "overflow_valve" => overflow_valve().prop_map(ElementParams::OverflowValve).boxed(),
+        "flow_limiter" => flow_limiter().prop_map(ElementParams::FlowLimiter).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
         "heat_exchanger" => heat_exchanger().prop_map(ElementParams::HeatExchanger).boxed(),
@@ -333,6 +336,18 @@ fn overflow_valve() -> impl Strategy<Value = OverflowValveParams> {
             opening_dp_pa,
             band_dp_pa: band.map(|share: f64| share * opening_dp_pa),
             leakage,
+            delta_m,
+        },
+    )
+}
+
+fn flow_limiter() -> impl Strategy<Value = FlowLimiterParams> {
+    let set = prop_oneof![Just(0.0), logarithmic(1e-3, 3.0)];
+    (logarithmic(0.1, 1000.0), set, 0.0..30.0, 0.005..0.3).prop_map(
+        |(kvs_m3_h, share, rise_time_s, delta_m): (_, f64, _, _)| FlowLimiterParams {
+            kvs_m3_h,
+            m_flow_set_kg_s: share * at_a_tenth_of_a_bar_kg_s(kvs_m3_h),
+            rise_time_s,
             delta_m,
         },
     )

@@ -2,6 +2,7 @@
 
 pub mod ball_valve;
 pub mod check_valve;
+pub mod flow_limiter;
 pub mod flow_source;
 pub mod heat_exchanger;
 pub mod overflow_valve;
@@ -22,6 +23,7 @@ anergy_core::registry! {
         Valve("valve", valve::Valve, valve::ValveParams),
         BallValve("ball_valve", ball_valve::BallValve, ball_valve::BallValveParams),
         OverflowValve("overflow_valve", overflow_valve::OverflowValve, overflow_valve::OverflowValveParams),
+        FlowLimiter("flow_limiter", flow_limiter::FlowLimiter, flow_limiter::FlowLimiterParams),
         CheckValve("check_valve", check_valve::CheckValve, check_valve::CheckValveParams),
         Resistance("resistance", resistance::Resistance, resistance::ResistanceParams),
         HeatExchanger("heat_exchanger", heat_exchanger::HeatExchanger, heat_exchanger::HeatExchangerParams),

@@ -166,6 +166,9 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
             list.add(group, name, "power_w", "W", Source::EdgePower(i));
         }
         Element::Valve(_) | Element::BallValve(_) => list.add(group, name, "opening", "1", Source::EdgePosition(i)),
+        Element::FlowLimiter(_) => {
+            list.add(group, name, "m_flow_set_kg_s", "kg s-1", Source::EdgePosition(i));
+        }
         Element::Pipe(_) => {
             list.add(group, name, "t_a_k", "K", Source::PipeEnd(i, Port::A));
             list.add(group, name, "t_b_k", "K", Source::PipeEnd(i, Port::B));
