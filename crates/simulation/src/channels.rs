@@ -165,7 +165,9 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
             list.add(group, name, "speed", "1", Source::PumpSpeed(i));
             list.add(group, name, "power_w", "W", Source::EdgePower(i));
         }
-        Element::Valve(_) | Element::BallValve(_) => list.add(group, name, "opening", "1", Source::EdgePosition(i)),
+        Element::Valve(_) | Element::BallValve(_) => {
+            list.add(group, name, "opening", "1", Source::EdgePosition(i));
+        }
         Element::FlowLimiter(_) => {
             list.add(group, name, "m_flow_set_kg_s", "kg s-1", Source::EdgePosition(i));
         }
