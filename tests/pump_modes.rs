@@ -43,7 +43,14 @@ fn network(nodes: usize, parts: &[(usize, usize, ElementParams)]) -> Network {
         leads_partner: false,
     });
     let edges = edges.collect();
-    Network { medium, gravity_m_s2: GRAVITY_M_S2, nodes: all, edges, ports: Vec::new() }
+    Network {
+        medium,
+        gravity_m_s2: GRAVITY_M_S2,
+        nodes: all,
+        edges,
+        ports: Vec::new(),
+        prescriptions: Vec::new(),
+    }
 }
 
 #[test]
