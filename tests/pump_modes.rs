@@ -11,6 +11,7 @@ use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::{Edge, GRAVITY_M_S2, Network, Node, NodeKind};
 use anergy_network::hydraulics::HydraulicSolver;
 use anergy_network::state::NetworkState;
+use anergy_tests::Random;
 
 /// Iterations of a cold solve.
 const COLD_ITERATIONS: u32 = 30;
@@ -79,4 +80,55 @@ fn one_loop_at_its_set_value_saturated_and_at_rest() {
     assert!((m / 0.31623 - 1.0).abs() < 1e-3 && (head / 1e4 - 1.0).abs() < 1e-3, "{m} {head}");
     let (m, _, speed) = solve(PumpMode::Head, 35_000.0);
     assert!((m - 0.52255).abs() < 1e-4 && speed > 0.999, "{m} {speed}");
+}
+
+#[test]
+fn houses_on_a_line_with_their_own_pumps_and_a_feed_pump() {
+    // Supply 1..=n, return n+1..=2n, each house a pump and a resistance; the plant is a pump in head mode
+    // from 0 (its return) to 1. Some houses ask for more than they can get, some for nothing.
+    let n = 12;
+    let mut parts = vec![(0, 1, pump(PumpMode::Head)), (n + 1, 0, resistance(3.0))];
+    for i in 1..=n {
+        parts.push((i, 2 * n + i, pump(PumpMode::Flow)));
+        parts.push((2 * n + i, n + i, resistance(0.1)));
+        if i < n {
+            parts.push((i, i + 1, resistance(0.6)));
+            parts.push((n + i + 1, n + i, resistance(0.6)));
+        }
+    }
+    let network = network(3 * n + 1, &parts);
+    let mut state = NetworkState::new(&network, 300.0);
+    let mut solver = HydraulicSolver::new(&network).unwrap();
+    let mut random = Random(5);
+    let (mut held, mut full, mut most, mut total) = (0, 0, 0, 0);
+    for _ in 0..200 {
+        for (i, edge) in network.edges.iter().enumerate() {
+            if let Some(actuator) = edge.element.actuator() {
+                let share = *random.choose(&[0.0, 0.05, 0.3, 0.5, 0.9]);
+                state.position[i] = share * actuator.max * random.between(0.8, 1.0);
+            }
+        }
+        state.invalidate_hydraulics();
+        let report = solver.solve(&network, &mut state).unwrap();
+        most = most.max(report.iterations);
+        total += report.iterations;
+        for (i, edge) in network.edges.iter().enumerate().skip(2) {
+            let Element::Pump(pump) = &edge.element else { continue };
+            let (m, set) = (state.m_flow_kg_s[i], state.position[i]);
+            let speed = pump.speed(m, &state.edge_state(&network, i));
+            if set == 0.0 {
+                assert_eq!(speed, 0.0, "edge {i} is off");
+            } else if (m / set - 1.0).abs() < 1e-3 {
+                held += 1;
+            } else if m < set {
+                assert!(speed > 0.99, "edge {i}: {m} of {set} kg/s at speed {speed}");
+                full += 1;
+            } else {
+                assert!(speed < 0.05, "edge {i}: {m} of {set} kg/s at speed {speed}");
+            }
+        }
+    }
+    assert!(held > 500 && full > 100, "{held} held, {full} at full speed");
+    // Kinked laws cost iterations, never the solution.
+    assert!(most <= 120 && total <= 200 * 40, "at most {most}, {total} in all");
 }

@@ -38,7 +38,7 @@ const STEP_KG_S: f64 = 1e-8;
 const STEP_RELATIVE: f64 = 1e-7;
 /// Share of that which no edge may still need if its ends kept their pressures, when the last step was
 /// larger: the next one is not.
-const CORRECTION_SHARE: f64 = 1e-2;
+const CORRECTION_SHARE: f64 = 1e-3;
 /// Water that a pressure reference may exchange, kg/s; more is an unbalanced circuit.
 const REFERENCE_EXCHANGE_KG_S: f64 = 1e-6;
 /// Bounds of the slopes that the matrix sees, Pa s/kg: beyond what any component has, so that they only
@@ -48,7 +48,11 @@ const SLOPE_FLOOR: f64 = 1e-9;
 const SLOPE_CAP: f64 = 1e16;
 /// A step is accepted when the slope of the content has fallen to this share.
 const CONTENT_SLOPE_SHARE: f64 = 0.5;
-const MAX_ITERATIONS: u32 = 100;
+/// A full step that overshoots by less than this share is accepted in the first iterations; laws with
+/// kinks could go round in circles so.
+const OVERSHOOT_SHARE: f64 = 0.1;
+const HASTY_ITERATIONS: u32 = 12;
+const MAX_ITERATIONS: u32 = 500;
 const MAX_LINE_SEARCH: u32 = 40;
 
 /// How a solve went.
@@ -169,8 +173,9 @@ impl HydraulicSolver {
         self.system.begin(network, state, &self.kind, &self.laws)?;
         let mut mass_balanced = false;
         for iteration in 1..=MAX_ITERATIONS {
+            let overshoot = if iteration <= HASTY_ITERATIONS { OVERSHOOT_SHARE } else { 0.0 };
             self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
-            let (largest_step, trial) = self.take_step(network, state, mass_balanced)?;
+            let (largest_step, trial) = self.take_step(network, state, mass_balanced, overshoot)?;
             mass_balanced = true;
             let largest_p_pa = self.system.largest_p_pa();
             if (largest_step <= 1.0 || trial.correction <= CORRECTION_SHARE)
@@ -238,6 +243,7 @@ impl HydraulicSolver {
         network: &Network,
         state: &mut NetworkState,
         line_search: bool,
+        overshoot: f64,
     ) -> Result<(f64, Trial), HydraulicError> {
         let mut largest = 0.0_f64;
         // Slope of the content at the start of the step; pressures cancel, since the step has no net
@@ -251,15 +257,23 @@ impl HydraulicSolver {
             }
         }
         let mut trial = self.evaluate_trial(network, state, 1.0)?;
-        if line_search && largest > 1.0 && trial.content_slope > -CONTENT_SLOPE_SHARE * start {
-            // The full step overshoots the minimum of the content along it: false position.
+        if line_search && largest > 1.0 && trial.content_slope > -overshoot * start {
+            // The full step overshoots the minimum of the content along it: false position and halving.
             let (mut low, mut low_slope, mut high, mut high_slope) =
                 (0.0, start, 1.0, trial.content_slope);
-            for _ in 0..MAX_LINE_SEARCH {
+            for i in 0..MAX_LINE_SEARCH {
                 let secant = low + (high - low) * low_slope / (low_slope - high_slope);
-                let alpha = secant.clamp(low + 0.1 * (high - low), high - 0.1 * (high - low));
+                let margin = 0.1 * (high - low);
+                let alpha = if i % 2 == 0 {
+                    secant.clamp(low + margin, high - margin)
+                } else {
+                    0.5 * (low + high)
+                };
                 trial = self.evaluate_trial(network, state, alpha)?;
-                if trial.content_slope.abs() <= -CONTENT_SLOPE_SHARE * start {
+                // The content has surely fallen: it is convex, so it fell by -low_slope low at least and
+                // rose by content_slope (alpha - low) at most.
+                let falls = trial.content_slope * (alpha - low).max(0.0) <= -0.5 * low_slope * low;
+                if falls && trial.content_slope.abs() <= -CONTENT_SLOPE_SHARE * start {
                     break;
                 }
                 if trial.content_slope < 0.0 {

@@ -80,7 +80,12 @@ pub(super) fn carried(network: &Network) -> Vec<Option<f64>> {
 }
 
 /// Sign of the flow of `other` against that of `edge` where all water of one passes the other.
-fn series_sign(network: &Network, incident: &[Vec<usize>], edge: usize, other: usize) -> Option<f64> {
+fn series_sign(
+    network: &Network,
+    incident: &[Vec<usize>],
+    edge: usize,
+    other: usize,
+) -> Option<f64> {
     if edge == other {
         return Some(1.0);
     }
