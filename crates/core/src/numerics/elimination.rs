@@ -1,17 +1,23 @@
-//! Symmetric elimination as a recorded list of updates, for matrices that fill in little.
+//! Elimination of the potentials of a conductance network as a recorded list of updates, for networks
+//! that fill in little.
 //!
-//! **Equation** `A = L D L^T`, column by column: `l_ij = a_ij/d_j`, then `a_ik -= l_ij a_kj` for the
-//! pairs `i >= k` of the column. Where each update goes is found once and kept, so that a
-//! factorisation is a walk through one list: on near-tree networks several times cheaper than finding
-//! the pattern of each row again, on meshes the list grows with the work and a blocked method wins.
+//! **Equation** unknown j has the conductance `g_j` to what is given and `c_ij` to the others. Taking it
+//! out leaves `d_j = g_j + sum c_ij`, `l_ij = c_ij/d_j`, and adds `l_ij c_kj` to the conductance between
+//! i and k and `l_ij g_j` to that from i to what is given (star-mesh transformation).
 //!
-//! **Sources** `davis2006` (chapter 4: elimination tree and column counts).
+//! **Numerics** only positive numbers are added and multiplied, so that every conductance keeps its
+//! relative precision over any number of decades; the same elimination on matrix entries cancels and
+//! ends in a zero pivot behind a nearly closed valve. Where each update goes is found once and kept: a
+//! factorisation is a walk through one list, on near-tree networks several times cheaper than finding
+//! the pattern of each row again. On meshes the list grows with the work and a blocked method wins.
+//!
+//! **Sources** `davis2006` (chapter 4: elimination tree), `alfa2002` (elimination without subtraction).
 
 /// The analysis gives up when a column has more updates than this on average.
 const MAX_UPDATES_PER_COLUMN: usize = 24;
 
-/// The factorisation of a matrix in its elimination order. Entries: the `n` diagonal ones, then the
-/// columns of the strictly lower triangle.
+/// A conductance network in its elimination order. Entries: the `n` conductances to what is given, then
+/// those between unknowns, column by column of the strictly lower triangle.
 #[derive(Debug, Clone)]
 pub(super) struct Elimination {
     n: usize,
@@ -62,7 +68,6 @@ impl Elimination {
         for j in 0..n {
             let below = &row[start[j] as usize..start[j + 1] as usize];
             for (q, &k) in below.iter().enumerate() {
-                target.push(k);
                 // The rows that follow are rows of column k too, in the same order.
                 let mut place = start[k as usize] as usize;
                 for &i in &below[q + 1..] {
@@ -92,34 +97,30 @@ impl Elimination {
         &mut self.value
     }
 
-    /// Factorises the values in place: `1/d` on the diagonal, L below it. False when a pivot is not
-    /// positive.
+    /// Eliminates in place: `1/d` for each unknown and L between them. False where an unknown is
+    /// connected with nothing.
     pub(super) fn factor(&mut self) -> bool {
-        let (diagonal, below) = self.value.split_at_mut(self.n);
+        let (given, between) = self.value.split_at_mut(self.n);
         let mut target = self.target.iter();
         for j in 0..self.n {
-            let pivot = diagonal[j];
+            let (begin, end) = (self.start[j] as usize, self.start[j + 1] as usize);
+            // Entries of later columns lie behind this one's.
+            let (column, later) = between[begin..].split_at_mut(end - begin);
+            let pivot = given[j] + column.iter().sum::<f64>();
             if !(pivot > 0.0 && pivot < f64::INFINITY) {
                 return false;
             }
-            let inverse = 1.0 / pivot;
-            diagonal[j] = inverse;
-            let (begin, end) = (self.start[j] as usize, self.start[j + 1] as usize);
-            // Entries of later columns lie behind this one's.
-            let (column, later) = below[begin..].split_at_mut(end - begin);
+            let (inverse, given_j) = (1.0 / pivot, given[j]);
             let offset = self.n + end;
-            for q in 0..column.len() {
-                let factor = column[q] * inverse;
-                for (p, &to) in (q..column.len()).zip(&mut target) {
-                    let to = to as usize;
-                    if p == q {
-                        diagonal[to] -= factor * column[p];
-                    } else {
-                        later[to - offset] -= factor * column[p];
-                    }
+            for (q, &k) in self.row[begin..end].iter().enumerate() {
+                let share = column[q] * inverse;
+                given[k as usize] += share * given_j;
+                for (c, &to) in column[q + 1..].iter().zip(&mut target) {
+                    later[to as usize - offset] += share * c;
                 }
-                column[q] = factor;
+                column[q] = share;
             }
+            given[j] = inverse;
         }
         true
     }
@@ -131,13 +132,13 @@ impl Elimination {
         for j in 0..self.n {
             let xj = x[j];
             for (&i, l) in self.row[column(j)].iter().zip(&below[column(j)]) {
-                x[i as usize] -= l * xj;
+                x[i as usize] += l * xj;
             }
         }
         for j in (0..self.n).rev() {
             let mut xj = x[j] * inverse[j];
             for (&i, l) in self.row[column(j)].iter().zip(&below[column(j)]) {
-                xj -= l * x[i as usize];
+                xj += l * x[i as usize];
             }
             x[j] = xj;
         }
@@ -197,21 +198,35 @@ mod tests {
 
     #[test]
     fn arrow_and_chain() {
-        // Node 0 touches 1 and 2; eliminating it joins them: A = [4 -1 -1; -1 3 0; -1 0 3].
-        // x = [1, 2, 3]: A x = [4 - 2 - 3, -1 + 6, -1 + 9] = [-1, 5, 8]
+        // Unknown 0 has 2 to what is given and 1 to each of 1 and 2, which have 2: eliminating it joins
+        // them. Inflow at x = [1, 2, 3]: [4 - 2 - 3, -1 + 6, -1 + 9] = [-1, 5, 8]
         let mut solver = Elimination::analyze(3, [(0, 2), (1, 0)].into_iter()).unwrap();
-        for (i, j, value) in
-            [(0, 0, 4.0), (1, 1, 3.0), (2, 2, 3.0), (1, 0, -1.0), (2, 0, -1.0), (2, 1, 0.0)]
-        {
+        for (i, j, value) in [(0, 0, 2.0), (1, 1, 2.0), (2, 2, 2.0), (1, 0, 1.0), (2, 0, 1.0)] {
             let slot = solver.slot(i, j).unwrap();
             solver.values_mut()[slot] = value;
         }
+        assert!(solver.slot(2, 1).is_some());
         assert!(solver.factor());
         let mut x = [-1.0, 5.0, 8.0];
         solver.solve_in_place(&mut x);
         for (x, expected) in x.iter().zip([1.0, 2.0, 3.0]) {
             assert!((x - expected).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn conductances_of_thirty_decades_keep_their_digits() {
+        // Given - 1e-20 - 0 - 1e9 - 1 - 1e10 - 2, 1 kg/s into 2: x0 = 1e20, x1 = x0 + 1e-9, ...; the
+        // differences drown in x0, but the inflow must come out of the weak conductance alone.
+        let mut solver = Elimination::analyze(3, [(0, 1), (1, 2)].into_iter()).unwrap();
+        for (i, j, value) in [(0, 0, 1e-20), (1, 0, 1e9), (2, 1, 1e10)] {
+            let slot = solver.slot(i, j).unwrap();
+            solver.values_mut()[slot] = value;
+        }
+        assert!(solver.factor());
+        let mut x = [0.0, 0.0, 1.0];
+        solver.solve_in_place(&mut x);
+        assert!(x.iter().all(|x| (x / 1e20 - 1.0).abs() < 1e-14), "{x:?}");
     }
 
     #[test]

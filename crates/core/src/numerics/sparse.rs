@@ -1,7 +1,7 @@
 //! Sparse direct solvers on faer: symbolic analysis once, numeric refactorisation in place.
 //!
-//! [`SparseCholesky`] solves the nodal equations of the hydraulics (symmetric positive definite; its own
-//! recorded elimination where there is little fill-in), [`SparseLu`] the node temperatures of thermally
+//! [`ConductanceSolver`] solves the nodal equations of the hydraulics (recorded elimination where there is
+//! little fill-in, Cholesky by faer where there is much), [`SparseLu`] the node temperatures of thermally
 //! closed loops (unsymmetric). Neither allocates after its analysis. This is the only file that knows
 //! faer.
 
@@ -45,6 +45,19 @@ impl Columns {
         self.row[begin..end].binary_search(&(i as u32)).ok().map(|k| begin + k)
     }
 
+    /// Writes the matrix of these conductances, in the same pattern with the diagonal first in each
+    /// column.
+    fn laplacian(&self, matrix: &mut Self) {
+        matrix.value.copy_from_slice(&self.value);
+        for j in 0..self.n {
+            for k in self.start[j] as usize + 1..self.start[j + 1] as usize {
+                matrix.value[k] = -self.value[k];
+                matrix.value[self.start[j] as usize] += self.value[k];
+                matrix.value[self.start[self.row[k] as usize] as usize] += self.value[k];
+            }
+        }
+    }
+
     fn symbolic(&self) -> SymbolicSparseColMatRef<'_, u32> {
         SymbolicSparseColMatRef::new_checked(self.n, self.n, &self.start, None, &self.row)
     }
@@ -54,8 +67,9 @@ impl Columns {
     }
 }
 
-/// Cholesky factorisation of a sparse symmetric positive definite matrix.
-pub struct SparseCholesky {
+/// Potentials of a network of conductances between unknowns and to given potentials (weighted graph
+/// Laplacian, symmetric positive definite).
+pub struct ConductanceSolver {
     n: usize,
     method: Method,
 }
@@ -69,14 +83,17 @@ enum Method {
         ordered: Vec<f64>,
     },
     Blocked {
+        /// Conductances; the diagonal holds those to given potentials.
         lower: Columns,
+        /// The matrix of them.
+        matrix: Columns,
         symbolic: cholesky::SymbolicCholesky<u32>,
         factor: Vec<f64>,
         scratch: MemBuffer,
     },
 }
 
-impl SparseCholesky {
+impl ConductanceSolver {
     /// Analyses the pattern of `n` unknowns: the diagonal and the given off-diagonal pairs (either
     /// triangle, duplicates allowed).
     ///
@@ -118,10 +135,14 @@ impl SparseCholesky {
                 .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq)),
         );
         let factor = vec![0.0; symbolic.len_val()];
-        Ok(Self { n, method: Method::Blocked { lower, symbolic, factor, scratch } })
+        Ok(Self {
+            n,
+            method: Method::Blocked { matrix: lower.clone(), lower, symbolic, factor, scratch },
+        })
     }
 
-    /// Where entry (i, j) is kept in [`Self::values_mut`]; `None` outside the pattern.
+    /// Where the conductance between i and j is kept in [`Self::values_mut`], for `i = j` that to given
+    /// potentials; `None` outside the pattern.
     pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
         match &self.method {
             Method::Recorded { elimination, place, .. } => {
@@ -132,8 +153,7 @@ impl SparseCholesky {
         }
     }
 
-    /// The stored entries of the lower triangle, all to be set before [`Self::factor`], which may
-    /// overwrite them.
+    /// The conductances, all to be set before [`Self::factor`], which may overwrite them.
     #[inline]
     pub fn values_mut(&mut self) -> &mut [f64] {
         match &mut self.method {
@@ -152,10 +172,11 @@ impl SparseCholesky {
         self.n == 0
     }
 
-    /// Factorises the present values.
+    /// Factorises for the present conductances (not negative).
     ///
     /// # Errors
-    /// [`FactorError::Singular`] when the matrix is not positive definite.
+    /// [`FactorError::Singular`] when an unknown has no conductance, or when those of a meshed network
+    /// are too many decades apart.
     pub fn factor(&mut self) -> Result<(), FactorError> {
         let singular = FactorError::Singular { unknowns: self.n };
         match &mut self.method {
@@ -166,18 +187,21 @@ impl SparseCholesky {
                     Err(singular)
                 }
             }
-            Method::Blocked { lower, symbolic, factor, scratch } => symbolic
-                .factorize_numeric_llt(
-                    factor,
-                    lower.matrix(),
-                    Side::Lower,
-                    Default::default(),
-                    Par::Seq,
-                    MemStack::new(scratch),
-                    Default::default(),
-                )
-                .map(|_| ())
-                .map_err(|_| singular),
+            Method::Blocked { lower, matrix, symbolic, factor, scratch } => {
+                lower.laplacian(matrix);
+                symbolic
+                    .factorize_numeric_llt(
+                        factor,
+                        matrix.matrix(),
+                        Side::Lower,
+                        Default::default(),
+                        Par::Seq,
+                        MemStack::new(scratch),
+                        Default::default(),
+                    )
+                    .map(|_| ())
+                    .map_err(|_| singular)
+            }
         }
     }
 
@@ -286,14 +310,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cholesky_of_a_chain() {
-        // Conductances 1-2: 2, 2-3: 3, ground at 1: 1. Unit inflow at 3 leaves at ground:
+    fn potentials_of_a_chain() {
+        // Conductances 1-2: 2, 2-3: 3, 1 to given 0: 1. Unit inflow at 3 leaves there:
         // p1 = 1/1, p2 = p1 + 1/2, p3 = p2 + 1/3.
-        let mut solver = SparseCholesky::analyze(3, &[(0, 1), (2, 1)]).unwrap();
-        let entries = [(0, 0, 3.0), (1, 1, 5.0), (2, 2, 3.0), (0, 1, -2.0), (1, 2, -3.0)];
+        let mut solver = ConductanceSolver::analyze(3, &[(0, 1), (2, 1)]).unwrap();
         for round in 1..=2 {
             solver.values_mut().fill(0.0);
-            for (i, j, value) in entries {
+            for (i, j, value) in [(0, 0, 1.0), (0, 1, 2.0), (1, 2, 3.0)] {
                 let slot = solver.slot(i, j).unwrap();
                 solver.values_mut()[slot] = value * f64::from(round);
             }
@@ -310,8 +333,8 @@ mod tests {
     }
 
     #[test]
-    fn recorded_and_blocked_elimination_agree_with_the_matrix() {
-        // A chain fills in little, a 30 x 30 grid much; both: A x = b for x_i = sin i.
+    fn recorded_and_blocked_elimination_agree_with_the_balance() {
+        // A chain fills in little, a 30 x 30 grid much; both: inflows of the potentials sin i.
         let grid = |i: usize, j: usize| 30 * i + j;
         let mut grid_pairs = Vec::new();
         for i in 0..30 {
@@ -322,28 +345,24 @@ mod tests {
         }
         let chain_pairs: Vec<_> = (1..900).map(|i| (i - 1, i)).collect();
         for (pairs, recorded) in [(chain_pairs, true), (grid_pairs, false)] {
-            let mut solver = SparseCholesky::analyze(900, &pairs).unwrap();
+            let mut solver = ConductanceSolver::analyze(900, &pairs).unwrap();
             assert_eq!(matches!(solver.method, Method::Recorded { .. }), recorded);
             let x: Vec<f64> = (0..900).map(|i| f64::from(i).sin()).collect();
-            let mut b = vec![0.0; 900];
-            let mut add = |i: usize, j: usize, value: f64| {
-                let slot = solver.slot(i, j).unwrap();
-                solver.values_mut()[slot] += value;
-                b[i] += value * x[j];
-                if i != j {
-                    b[j] += value * x[i];
-                }
-            };
-            (0..900).for_each(|i| add(i, i, 1e-3));
+            let mut inflow: Vec<f64> = x.iter().map(|x| 1e-3 * x).collect();
+            for i in 0..900 {
+                let slot = solver.slot(i, i).unwrap();
+                solver.values_mut()[slot] = 1e-3;
+            }
             for (k, &(i, j)) in pairs.iter().enumerate() {
                 let conductance = 1.0 + (k % 7) as f64;
-                add(i, i, conductance);
-                add(j, j, conductance);
-                add(i, j, -conductance);
+                let slot = solver.slot(i, j).unwrap();
+                solver.values_mut()[slot] += conductance;
+                inflow[i] += conductance * (x[i] - x[j]);
+                inflow[j] += conductance * (x[j] - x[i]);
             }
             solver.factor().unwrap();
-            solver.solve_in_place(&mut b);
-            let worst = x.iter().zip(&b).map(|(x, b)| (x - b).abs()).fold(0.0, f64::max);
+            solver.solve_in_place(&mut inflow);
+            let worst = x.iter().zip(&inflow).map(|(x, b)| (x - b).abs()).fold(0.0, f64::max);
             assert!(worst < 1e-10, "{worst}");
         }
     }

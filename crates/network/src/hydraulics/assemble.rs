@@ -5,7 +5,7 @@ use crate::graph::{Network, NodeKind, UnionFind};
 use crate::hydraulics::{HydraulicError, Kind, Laws};
 use crate::state::NetworkState;
 use anergy_core::ids::NodeId;
-use anergy_core::numerics::sparse::SparseCholesky;
+use anergy_core::numerics::sparse::ConductanceSolver;
 
 /// No unknown or no slot.
 const NONE: u32 = u32::MAX;
@@ -17,17 +17,17 @@ struct EdgeSlots {
     node_b: u32,
     unknown_a: u32,
     unknown_b: u32,
-    diagonal_a: u32,
-    diagonal_b: u32,
-    off_diagonal: u32,
+    /// Between the unknowns, or from one to a fixed pressure.
+    conductance: u32,
 }
 
 pub(super) struct NodalSystem {
-    cholesky: SparseCholesky,
+    conductances: ConductanceSolver,
     slots: Vec<EdgeSlots>,
     /// Unknown of each node; NONE where the pressure is fixed.
     unknown_of_node: Vec<u32>,
-    diagonal: Vec<u32>,
+    /// Conductance of each unknown to fixed pressures.
+    to_fixed: Vec<u32>,
     gravity_pa: Vec<f64>,
     ideal_links: Vec<IdealLink>,
     increment: Vec<f64>,
@@ -72,12 +72,19 @@ impl NodalSystem {
             .filter(|&(a, b)| a != NONE && b != NONE && a != b)
             .map(|(a, b)| (a as usize, b as usize))
             .collect();
-        let cholesky = SparseCholesky::analyze(count as usize, &pairs)?;
+        let conductances = ConductanceSolver::analyze(count as usize, &pairs)?;
         let slot = |a: u32, b: u32| {
-            if a == NONE || b == NONE {
+            let (a, b) = if a == NONE {
+                (b, b)
+            } else if b == NONE {
+                (a, a)
+            } else {
+                (a, b)
+            };
+            if a == NONE {
                 return NONE;
             }
-            cholesky.slot(a as usize, b as usize).map_or(NONE, |slot| slot as u32)
+            conductances.slot(a as usize, b as usize).map_or(NONE, |slot| slot as u32)
         };
         let slots = (0..edges)
             .map(|i| (i, ends(i)))
@@ -86,12 +93,10 @@ impl NodalSystem {
                 node_b: network.edges[i].to.0,
                 unknown_a: a,
                 unknown_b: b,
-                diagonal_a: slot(a, a),
-                diagonal_b: slot(b, b),
-                off_diagonal: if a == b { NONE } else { slot(a, b) },
+                conductance: if a == b { NONE } else { slot(a, b) },
             })
             .collect();
-        let diagonal = (0..count).map(|i| slot(i, i)).collect();
+        let to_fixed = (0..count).map(|i| slot(i, i)).collect();
         let density = network.medium.density_kg_m3;
         let gravity_pa = network
             .edges
@@ -102,10 +107,10 @@ impl NodalSystem {
             })
             .collect();
         Ok(Self {
-            cholesky,
+            conductances,
             slots,
             unknown_of_node,
-            diagonal,
+            to_fixed,
             gravity_pa,
             ideal_links: ideal_forest(network),
             increment: vec![0.0; count as usize],
@@ -233,7 +238,7 @@ impl NodalSystem {
         step: &mut [f64],
     ) -> Result<(), HydraulicError> {
         self.start_balance(state);
-        let values = self.cholesky.values_mut();
+        let values = self.conductances.values_mut();
         values.fill(0.0);
         let mut largest_conductance = 0.0_f64;
         for (i, slots) in self.slots.iter().enumerate() {
@@ -247,16 +252,8 @@ impl NodalSystem {
                 Kind::Law => {
                     let conductance = 1.0 / laws.slope[i];
                     largest_conductance = largest_conductance.max(conductance);
-                    if slots.unknown_a != slots.unknown_b {
-                        if slots.diagonal_a != NONE {
-                            values[slots.diagonal_a as usize] += conductance;
-                        }
-                        if slots.diagonal_b != NONE {
-                            values[slots.diagonal_b as usize] += conductance;
-                        }
-                        if slots.off_diagonal != NONE {
-                            values[slots.off_diagonal as usize] -= conductance;
-                        }
+                    if slots.conductance != NONE {
+                        values[slots.conductance as usize] += conductance;
                     }
                     let dp = state.p_pa[slots.node_a as usize] - state.p_pa[slots.node_b as usize];
                     conductance * (dp - self.gravity_pa[i] - laws.loss[i])
@@ -266,11 +263,11 @@ impl NodalSystem {
         }
         // An island without fixed pressure keeps its level: no flow passes this conductance.
         for &root in &self.floating {
-            let slot = self.diagonal[self.unknown_of_node[root as usize] as usize];
+            let slot = self.to_fixed[self.unknown_of_node[root as usize] as usize];
             values[slot as usize] += largest_conductance.max(1e-12);
         }
-        self.cholesky.factor()?;
-        self.cholesky.solve_in_place(&mut self.increment);
+        self.conductances.factor()?;
+        self.conductances.solve_in_place(&mut self.increment);
         self.largest_p_pa = 0.0;
         for (p, &unknown) in state.p_pa.iter_mut().zip(&self.unknown_of_node) {
             if unknown != NONE {
@@ -291,7 +288,7 @@ impl NodalSystem {
     pub(super) fn respond(&mut self, edge: usize, laws: &Laws) {
         self.increment.fill(0.0);
         balance(&mut self.increment, &self.slots[edge], 1.0 / laws.slope[edge]);
-        self.cholesky.solve_in_place(&mut self.increment);
+        self.conductances.solve_in_place(&mut self.increment);
     }
 
     /// Response of the pressure of a node, Pa/Pa.
