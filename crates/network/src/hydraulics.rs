@@ -28,17 +28,14 @@ pub use error::HydraulicError;
 use prescribed::Stand;
 
 /// Largest accepted pressure residual of an edge, Pa, at zero pressure level.
-const RESIDUAL_PA: f64 = 1e-3;
+const RESIDUAL_PA: f64 = 1e-5;
 /// The same relative to the largest pressure.
-const RESIDUAL_RELATIVE: f64 = 1e-8;
+const RESIDUAL_RELATIVE: f64 = 1e-11;
 /// Largest accepted mass residual of a node, kg/s.
 const MASS_RESIDUAL_KG_S: f64 = 1e-9;
-/// Largest accepted last step, kg/s and relative to the flow.
-const STEP_KG_S: f64 = 1e-8;
-const STEP_RELATIVE: f64 = 1e-7;
-/// Share of that which no edge may still need if its ends kept their pressures, when the last step was
-/// larger: the next one is not.
-const CORRECTION_SHARE: f64 = 1e-3;
+/// Flow by which an edge may still miss its law if its ends keep their pressures, kg/s and relative.
+const CORRECTION_KG_S: f64 = 1e-11;
+const CORRECTION_RELATIVE: f64 = 1e-10;
 /// Water that a pressure reference may exchange, kg/s; more is an unbalanced circuit.
 const REFERENCE_EXCHANGE_KG_S: f64 = 1e-6;
 /// Bounds of the slopes that the matrix sees, Pa s/kg: beyond what any component has, so that they only
@@ -52,7 +49,11 @@ const CONTENT_SLOPE_SHARE: f64 = 0.5;
 /// kinks could go round in circles so.
 const OVERSHOOT_SHARE: f64 = 0.1;
 const HASTY_ITERATIONS: u32 = 12;
-const MAX_ITERATIONS: u32 = 500;
+/// Rounding of a pressure difference, relative to the largest pressure.
+const PRESSURE_ROUNDING: f64 = 2e-15;
+/// Beyond this pressure difference no component holds, and the rounding of pressures moves water.
+const ABSURD_PA: f64 = 1e10;
+const MAX_ITERATIONS: u32 = 300;
 const MAX_LINE_SEARCH: u32 = 40;
 
 /// How a solve went.
@@ -89,7 +90,8 @@ struct Trial {
     content_slope: f64,
     /// Largest pressure residual, Pa.
     residual_pa: f64,
-    /// Largest flow that an edge would change by if its ends kept their pressures, over the tolerance.
+    /// Largest flow that an edge would change by if its ends kept their pressures, over the tolerance;
+    /// misses within the rounding of the pressures do not count.
     correction: f64,
 }
 
@@ -175,10 +177,10 @@ impl HydraulicSolver {
         for iteration in 1..=MAX_ITERATIONS {
             let overshoot = if iteration <= HASTY_ITERATIONS { OVERSHOOT_SHARE } else { 0.0 };
             self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
-            let (largest_step, trial) = self.take_step(network, state, mass_balanced, overshoot)?;
+            let trial = self.take_step(network, state, mass_balanced, overshoot)?;
             mass_balanced = true;
             let largest_p_pa = self.system.largest_p_pa();
-            if (largest_step <= 1.0 || trial.correction <= CORRECTION_SHARE)
+            if trial.correction <= 1.0
                 && trial.residual_pa <= RESIDUAL_PA + RESIDUAL_RELATIVE * largest_p_pa
             {
                 let (mass_residual_kg_s, _) = self.system.mass_residual(state);
@@ -237,27 +239,28 @@ impl HydraulicSolver {
         Ok(())
     }
 
-    /// Moves the flows along the Newton step; returns its largest size over the step tolerance.
+    /// Moves the flows along the Newton step.
     fn take_step(
         &mut self,
         network: &Network,
         state: &mut NetworkState,
         line_search: bool,
         overshoot: f64,
-    ) -> Result<(f64, Trial), HydraulicError> {
-        let mut largest = 0.0_f64;
+    ) -> Result<Trial, HydraulicError> {
         // Slope of the content at the start of the step; pressures cancel, since the step has no net
         // inflow anywhere: g(alpha) = sum step (phi(m + alpha step) - (p_a - p_b) + rho g dz).
         let mut start = 0.0;
+        let mut moved = 0.0;
         for (i, step) in self.step.iter().enumerate() {
-            let m = state.m_flow_kg_s[i] + step;
-            largest = largest.max(step.abs() / (STEP_KG_S + STEP_RELATIVE * m.abs()));
             if self.kind[i] == Kind::Law {
+                moved += step.abs();
                 start -= step * step * self.laws.slope[i];
             }
         }
         let mut trial = self.evaluate_trial(network, state, 1.0)?;
-        if line_search && largest > 1.0 && trial.content_slope > -overshoot * start {
+        // Below the rounding of the pressures the slope says nothing, and only a full step balances mass.
+        let rounding = PRESSURE_ROUNDING * self.system.largest_p_pa() * moved;
+        if line_search && trial.content_slope > rounding - overshoot * start {
             // The full step overshoots the minimum of the content along it: false position and halving.
             let (mut low, mut low_slope, mut high, mut high_slope) =
                 (0.0, start, 1.0, trial.content_slope);
@@ -285,7 +288,7 @@ impl HydraulicSolver {
         }
         std::mem::swap(&mut state.m_flow_kg_s, &mut self.trial_m_kg_s);
         std::mem::swap(&mut self.laws, &mut self.trial_laws);
-        Ok((largest, trial))
+        Ok(trial)
     }
 
     /// Laws at the flows that this share of the step leads to.
@@ -295,6 +298,7 @@ impl HydraulicSolver {
         state: &NetworkState,
         share: f64,
     ) -> Result<Trial, HydraulicError> {
+        let rounding = PRESSURE_ROUNDING * self.system.largest_p_pa();
         let mut trial = Trial { content_slope: 0.0, residual_pa: 0.0, correction: 0.0 };
         for (i, edge) in network.edges.iter().enumerate() {
             let m = state.m_flow_kg_s[i] + share * self.step[i];
@@ -319,9 +323,9 @@ impl HydraulicSolver {
                 return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
             }
             trial.residual_pa = trial.residual_pa.max(size);
-            let tolerance = slope * (STEP_KG_S + STEP_RELATIVE * m.abs());
-            if size > trial.correction * tolerance {
-                trial.correction = size / tolerance;
+            let tolerance = slope * (CORRECTION_KG_S + CORRECTION_RELATIVE * m.abs());
+            if size - rounding > trial.correction * tolerance {
+                trial.correction = (size - rounding) / tolerance;
             }
         }
         Ok(trial)
@@ -335,6 +339,17 @@ impl HydraulicSolver {
             if self.kind[i] == Kind::Law && miss > worst.0 {
                 worst = (miss, i);
             }
+        }
+        let dp_pa = |i: usize| state.dp_pa(network, i);
+        let steepest = (0..network.edges.len())
+            .filter(|&i| self.kind[i] == Kind::Law)
+            .max_by(|&i, &j| dp_pa(i).abs().total_cmp(&dp_pa(j).abs()));
+        if let Some(i) = steepest.filter(|&i| dp_pa(i).abs() > ABSURD_PA) {
+            return HydraulicError::Absurd {
+                edge: EdgeId::from_index(i),
+                dp_pa: dp_pa(i),
+                m_flow_kg_s: state.m_flow_kg_s[i],
+            };
         }
         let (mass_residual_kg_s, node) = self.system.mass_residual(state);
         HydraulicError::NotConverged {

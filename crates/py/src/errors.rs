@@ -117,6 +117,7 @@ pub fn run_error(py: Python<'_>, error: &SimulationError, text: &str, origin: &O
         E::NotFinite { time, component } | E::Temperature { time, component, .. } => {
             failed(time, Some(component))
         }
+        E::Absurd { time, edge, .. } => failed(time, Some(edge)),
         E::Prescribed { time, free, .. } => failed(time, Some(free)),
         E::Control { time, controller, .. } => failed(time, Some(controller)),
         E::UnknownName { name, .. } => python::UnknownNameError::new_err((message, name.clone())),

@@ -30,6 +30,21 @@ pub enum RunError {
         /// Its residual, kg/s.
         mass_residual_kg_s: f64,
     },
+    /// The given flows would need pressures that nothing holds.
+    #[error(
+        "at {time}: edge \"{edge}\" would need {:.3e} bar to pass {m_flow_kg_s:.6} kg/s; is it closed while \
+         flows are imposed behind it?", .dp_pa / 1e5
+    )]
+    Absurd {
+        /// Simulated time.
+        time: String,
+        /// The edge.
+        edge: String,
+        /// Pressure difference, Pa.
+        dp_pa: f64,
+        /// Flow, kg/s.
+        m_flow_kg_s: f64,
+    },
     /// Imposed flows leave a part of the network with more water than can leave.
     #[error(
         "at {time}: {m_flow_kg_s:.6} kg/s more enter than can leave the part of the network around node \

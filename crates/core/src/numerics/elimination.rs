@@ -13,7 +13,7 @@
 //!
 //! **Sources** `davis2006` (chapter 4: elimination tree), `alfa2002` (elimination without subtraction).
 
-/// The analysis gives up when a column has more updates than this on average.
+/// The recorded list is not worth it when a column has more updates than this on average.
 const MAX_UPDATES_PER_COLUMN: usize = 24;
 
 /// A conductance network in its elimination order. Entries: the `n` conductances to what is given, then
@@ -25,18 +25,15 @@ pub(super) struct Elimination {
     start: Vec<u32>,
     /// Row of each entry below the diagonal.
     row: Vec<u32>,
-    /// Entry that each update changes, in the order of the updates.
-    target: Vec<u32>,
+    /// Entry that each update changes, in the order of the updates; `None` to look for it each time.
+    target: Option<Vec<u32>>,
     value: Vec<f64>,
 }
 
 impl Elimination {
     /// Analyses the pattern of the entries `(i, j)`, given in the order of elimination (either triangle,
-    /// duplicates and diagonal allowed), or `None` when it fills in too much.
-    pub(super) fn analyze(
-        n: usize,
-        entries: impl Iterator<Item = (u32, u32)> + Clone,
-    ) -> Option<Self> {
+    /// duplicates and diagonal allowed).
+    pub(super) fn analyze(n: usize, entries: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let entries = entries.filter(|(i, j)| i != j).map(|(i, j)| (i.max(j), i.min(j)));
         let mut row_start = vec![0_u32; n + 1];
         for (i, _) in entries.clone() {
@@ -53,10 +50,8 @@ impl Elimination {
         let parent = elimination_tree(n, columns);
         let mut start = vec![0_u32; n + 1];
         each_entry(n, columns, &parent, |j, _| start[j + 1] += 1);
-        let updates: usize = start.iter().map(|&count| (count * (count + 1) / 2) as usize).sum();
-        if updates > MAX_UPDATES_PER_COLUMN * n {
-            return None;
-        }
+        let updates: usize =
+            start.iter().map(|&c| (c as usize * (c as usize).saturating_sub(1)) / 2).sum();
         accumulate(&mut start);
         let mut row = vec![0_u32; start[n] as usize];
         let mut next = start.clone();
@@ -64,22 +59,36 @@ impl Elimination {
             row[next[j] as usize] = i;
             next[j] += 1;
         });
-        let mut target = Vec::with_capacity(updates);
-        for j in 0..n {
-            let below = &row[start[j] as usize..start[j + 1] as usize];
-            for (q, &k) in below.iter().enumerate() {
-                // The rows that follow are rows of column k too, in the same order.
-                let mut place = start[k as usize] as usize;
-                for &i in &below[q + 1..] {
-                    while row[place] != i {
-                        place += 1;
-                    }
-                    target.push((n + place) as u32);
+        let value = vec![0.0; n + row.len()];
+        let mut analyzed = Self { n, start, row, target: None, value };
+        if updates <= MAX_UPDATES_PER_COLUMN * n {
+            let mut target = Vec::with_capacity(updates);
+            for j in 0..n {
+                analyzed.updates(j, |_, to| target.push(to as u32));
+            }
+            analyzed.target = Some(target);
+        }
+        analyzed
+    }
+
+    /// Whether the list of updates is short enough to be kept.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.target.is_some()
+    }
+
+    /// Calls `update` with the place in the column and the entry it changes, for the entries of column j
+    /// after each of its rows: those rows are rows of that row's column too, in the same order.
+    fn updates(&self, j: usize, mut update: impl FnMut(usize, usize)) {
+        let below = &self.row[self.start[j] as usize..self.start[j + 1] as usize];
+        for (q, &k) in below.iter().enumerate() {
+            let mut place = self.start[k as usize] as usize;
+            for (p, &i) in below.iter().enumerate().skip(q + 1) {
+                while self.row[place] != i {
+                    place += 1;
                 }
+                update(p, self.n + place);
             }
         }
-        let value = vec![0.0; n + row.len()];
-        Some(Self { n, start, row, target, value })
     }
 
     /// Where entry (i, j), `i >= j`, is kept.
@@ -100,10 +109,11 @@ impl Elimination {
     /// Eliminates in place: `1/d` for each unknown and L between them. False where an unknown is
     /// connected with nothing.
     pub(super) fn factor(&mut self) -> bool {
-        let (given, between) = self.value.split_at_mut(self.n);
-        let mut target = self.target.iter();
-        for j in 0..self.n {
-            let (begin, end) = (self.start[j] as usize, self.start[j + 1] as usize);
+        let Self { n, start, row, target, value } = self;
+        let (given, between) = value.split_at_mut(*n);
+        let mut recorded = target.as_deref().unwrap_or_default().iter();
+        for j in 0..*n {
+            let (begin, end) = (start[j] as usize, start[j + 1] as usize);
             // Entries of later columns lie behind this one's.
             let (column, later) = between[begin..].split_at_mut(end - begin);
             let pivot = given[j] + column.iter().sum::<f64>();
@@ -111,12 +121,22 @@ impl Elimination {
                 return false;
             }
             let (inverse, given_j) = (1.0 / pivot, given[j]);
-            let offset = self.n + end;
-            for (q, &k) in self.row[begin..end].iter().enumerate() {
+            let below = &row[begin..end];
+            for (q, &k) in below.iter().enumerate() {
                 let share = column[q] * inverse;
                 given[k as usize] += share * given_j;
-                for (c, &to) in column[q + 1..].iter().zip(&mut target) {
-                    later[to as usize - offset] += share * c;
+                if target.is_some() {
+                    for (c, &to) in column[q + 1..].iter().zip(&mut recorded) {
+                        later[to as usize - (*n + end)] += share * c;
+                    }
+                } else {
+                    let mut place = start[k as usize] as usize;
+                    for (c, &i) in column[q + 1..].iter().zip(&below[q + 1..]) {
+                        while row[place] != i {
+                            place += 1;
+                        }
+                        later[place - end] += share * c;
+                    }
                 }
                 column[q] = share;
             }
@@ -200,7 +220,7 @@ mod tests {
     fn arrow_and_chain() {
         // Unknown 0 has 2 to what is given and 1 to each of 1 and 2, which have 2: eliminating it joins
         // them. Inflow at x = [1, 2, 3]: [4 - 2 - 3, -1 + 6, -1 + 9] = [-1, 5, 8]
-        let mut solver = Elimination::analyze(3, [(0, 2), (1, 0)].into_iter()).unwrap();
+        let mut solver = Elimination::analyze(3, [(0, 2), (1, 0)].into_iter());
         for (i, j, value) in [(0, 0, 2.0), (1, 1, 2.0), (2, 2, 2.0), (1, 0, 1.0), (2, 0, 1.0)] {
             let slot = solver.slot(i, j).unwrap();
             solver.values_mut()[slot] = value;
@@ -218,7 +238,7 @@ mod tests {
     fn conductances_of_thirty_decades_keep_their_digits() {
         // Given - 1e-20 - 0 - 1e9 - 1 - 1e10 - 2, 1 kg/s into 2: x0 = 1e20, x1 = x0 + 1e-9, ...; the
         // differences drown in x0, but the inflow must come out of the weak conductance alone.
-        let mut solver = Elimination::analyze(3, [(0, 1), (1, 2)].into_iter()).unwrap();
+        let mut solver = Elimination::analyze(3, [(0, 1), (1, 2)].into_iter());
         for (i, j, value) in [(0, 0, 1e-20), (1, 0, 1e9), (2, 1, 1e10)] {
             let slot = solver.slot(i, j).unwrap();
             solver.values_mut()[slot] = value;
@@ -230,8 +250,18 @@ mod tests {
     }
 
     #[test]
-    fn a_dense_pattern_is_left_to_others() {
+    fn without_a_list_the_result_is_the_same() {
+        // All of 60 connected with conductance 1, the first to the given potential 0: 1 kg/s into the
+        // last: x_0 = 1, and between two of a complete graph the resistance is 2/60.
         let entries = (0..60).flat_map(|j| (0..j).map(move |i| (i, j)));
-        assert!(Elimination::analyze(60, entries).is_none());
+        let mut solver = Elimination::analyze(60, entries);
+        assert!(!solver.is_recorded());
+        solver.values_mut().fill(1.0);
+        solver.values_mut()[1..60].fill(0.0);
+        assert!(solver.factor());
+        let mut x = [0.0; 60];
+        x[59] = 1.0;
+        solver.solve_in_place(&mut x);
+        assert!((x[0] - 1.0).abs() < 1e-14 && (x[59] - 1.0 - 2.0 / 60.0).abs() < 1e-14, "{x:?}");
     }
 }

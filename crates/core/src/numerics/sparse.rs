@@ -45,6 +45,21 @@ impl Columns {
         self.row[begin..end].binary_search(&(i as u32)).ok().map(|k| begin + k)
     }
 
+    /// All entries as (row, column, value).
+    fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        (0..self.n).flat_map(move |j| {
+            (self.start[j] as usize..self.start[j + 1] as usize)
+                .map(move |k| (self.row[k] as usize, j, self.value[k]))
+        })
+    }
+
+    /// Elimination of these conductances in the given order.
+    fn elimination(&self, place: &[u32]) -> Elimination {
+        let entries: Vec<(u32, u32)> =
+            self.entries().map(|(i, j, _)| (place[i], place[j])).collect();
+        Elimination::analyze(self.n, entries.into_iter())
+    }
+
     /// Writes the matrix of these conductances, in the same pattern with the diagonal first in each
     /// column.
     fn laplacian(&self, matrix: &mut Self) {
@@ -90,6 +105,12 @@ enum Method {
         symbolic: cholesky::SymbolicCholesky<u32>,
         factor: Vec<f64>,
         scratch: MemBuffer,
+        /// Place of each unknown in the order of elimination.
+        place: Vec<u32>,
+        /// For conductances that are too many decades apart; made when first needed.
+        careful: Option<Box<Elimination>>,
+        /// Whether the last factorisation is the careful one.
+        use_careful: bool,
     },
 }
 
@@ -112,8 +133,8 @@ impl ConductanceSolver {
             MemStack::new(&mut MemBuffer::new(scratch)),
         )
         .map_err(|_| failed)?;
-        let entries = pairs.iter().map(|&(i, j)| (place[i], place[j]));
-        if let Some(elimination) = Elimination::analyze(n, entries) {
+        let elimination = Elimination::analyze(n, pairs.iter().map(|&(i, j)| (place[i], place[j])));
+        if elimination.is_recorded() {
             return Ok(Self {
                 n,
                 method: Method::Recorded { elimination, place, ordered: vec![0.0; n] },
@@ -137,7 +158,16 @@ impl ConductanceSolver {
         let factor = vec![0.0; symbolic.len_val()];
         Ok(Self {
             n,
-            method: Method::Blocked { matrix: lower.clone(), lower, symbolic, factor, scratch },
+            method: Method::Blocked {
+                matrix: lower.clone(),
+                lower,
+                symbolic,
+                factor,
+                scratch,
+                place,
+                careful: None,
+                use_careful: false,
+            },
         })
     }
 
@@ -175,8 +205,7 @@ impl ConductanceSolver {
     /// Factorises for the present conductances (not negative).
     ///
     /// # Errors
-    /// [`FactorError::Singular`] when an unknown has no conductance, or when those of a meshed network
-    /// are too many decades apart.
+    /// [`FactorError::Singular`] when a part has no conductance to a given potential.
     pub fn factor(&mut self) -> Result<(), FactorError> {
         let singular = FactorError::Singular { unknowns: self.n };
         match &mut self.method {
@@ -187,9 +216,18 @@ impl ConductanceSolver {
                     Err(singular)
                 }
             }
-            Method::Blocked { lower, matrix, symbolic, factor, scratch } => {
+            Method::Blocked {
+                lower,
+                matrix,
+                symbolic,
+                factor,
+                scratch,
+                place,
+                careful,
+                use_careful,
+            } => {
                 lower.laplacian(matrix);
-                symbolic
+                let done = symbolic
                     .factorize_numeric_llt(
                         factor,
                         matrix.matrix(),
@@ -199,8 +237,20 @@ impl ConductanceSolver {
                         MemStack::new(scratch),
                         Default::default(),
                     )
-                    .map(|_| ())
-                    .map_err(|_| singular)
+                    .is_ok();
+                *use_careful = !done;
+                if done {
+                    return Ok(());
+                }
+                let careful = careful.get_or_insert_with(|| Box::new(lower.elimination(place)));
+                careful.values_mut().fill(0.0);
+                for (i, j, value) in lower.entries() {
+                    let (i, j) = (place[i] as usize, place[j] as usize);
+                    if let Some(slot) = careful.slot(i.max(j), i.min(j)) {
+                        careful.values_mut()[slot] = value;
+                    }
+                }
+                if careful.factor() { Ok(()) } else { Err(singular) }
             }
         }
     }
@@ -214,6 +264,16 @@ impl ConductanceSolver {
                     ordered[place as usize] = x;
                 }
                 elimination.solve_in_place(ordered);
+                for (&place, x) in place.iter().zip(x) {
+                    *x = ordered[place as usize];
+                }
+            }
+            Method::Blocked { place, careful: Some(careful), use_careful: true, .. } => {
+                let mut ordered = vec![0.0; n];
+                for (&place, &x) in place.iter().zip(&*x) {
+                    ordered[place as usize] = x;
+                }
+                careful.solve_in_place(&mut ordered);
                 for (&place, x) in place.iter().zip(x) {
                     *x = ordered[place as usize];
                 }

@@ -24,6 +24,16 @@ pub enum HydraulicError {
         /// Its residual, kg/s.
         mass_residual_kg_s: f64,
     },
+    /// The given flows would need pressures that nothing holds, and that cannot be computed either.
+    #[error("edge {} would need {dp_pa} Pa to pass {m_flow_kg_s} kg/s", .edge.0)]
+    Absurd {
+        /// The edge, for example a valve that is closed but for its leak.
+        edge: EdgeId,
+        /// Pressure difference, Pa.
+        dp_pa: f64,
+        /// Flow, kg/s.
+        m_flow_kg_s: f64,
+    },
     /// More water enters than leaves a part of the network that is closed.
     #[error("{m_flow_kg_s} kg/s more enter than leave the closed part around node {}", .node.0)]
     Unbalanced {

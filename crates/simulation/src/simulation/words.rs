@@ -129,6 +129,9 @@ pub(super) fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError
         HydraulicError::Unbalanced { node, m_flow_kg_s } => {
             RunError::Unbalanced { time, node: node_name(node), m_flow_kg_s }
         }
+        HydraulicError::Absurd { edge, dp_pa, m_flow_kg_s } => {
+            RunError::Absurd { time, edge: edge_name(edge), dp_pa, m_flow_kg_s }
+        }
         HydraulicError::NoEffect { edge } => RunError::Prescribed {
             time,
             free: edge_name(edge),
