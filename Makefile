@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python validate bench instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python validate bench bench-peers instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -43,6 +43,10 @@ validate: ## Slow cases, peers, large random sets
 
 bench: ## Criterion benches
 	cargo bench -p anergy-benches
+
+bench-peers: .venv-peers/.installed ## Hydraulics beside EPANET and pandapipes
+	cargo build --release -p anergy -p anergy-benches --bins
+	.venv-peers/bin/python benches/peers/speed.py
 
 instructions: ## Instructions of one warm solve with 1 000 edges (needs valgrind)
 	cargo build --release -p anergy-benches --bin warm_solve

@@ -5,6 +5,7 @@ use crate::channels;
 use crate::error::RunError;
 use crate::state::State;
 use anergy_core::ids::{ChannelId, SignalId};
+use anergy_network::state::NetworkState;
 
 impl Simulation {
     /// The id of an input signal.
@@ -39,6 +40,11 @@ impl Simulation {
     /// Gives a signal back to its schedule or controller.
     pub fn release(&mut self, id: SignalId) {
         self.state.taken_over[id.index()] = false;
+    }
+
+    /// Pressures, flows, temperatures and positions at present.
+    pub fn network_state(&self) -> &NetworkState {
+        &self.state.network
     }
 
     /// The id of a channel.
