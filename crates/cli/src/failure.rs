@@ -1,10 +1,11 @@
 //! What ends the program early: message, place, exit code.
 
 use anergy_core::error::RecordError;
+use anergy_import::ImportError;
 use anergy_simulation::diagnostic::{Diagnostic, Diagnostics};
 use anergy_simulation::error::RunError;
 use miette::{LabeledSpan, NamedSource, miette};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use thiserror::Error;
 
@@ -24,6 +25,14 @@ pub enum Failure {
     /// A run or a solve failed.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A file of another program is wrong.
+    #[error("{} problem(s) in {}", .errors.len(), .file.display())]
+    Import {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong in it.
+        errors: Vec<ImportError>,
+    },
     /// A file could not be read or written.
     #[error("{0}")]
     File(String),
@@ -60,6 +69,16 @@ impl Failure {
                 let count = problems.0.len();
                 let s = if count == 1 { "" } else { "s" };
                 eprintln!("{count} problem{s} in {file}");
+            }
+            Self::Import { file, errors } => {
+                for error in &errors {
+                    match error.line {
+                        Some(line) => eprintln!("{}:{line}: {error}", file.display()),
+                        None => eprintln!("{}: {error}", file.display()),
+                    }
+                }
+                let s = if errors.len() == 1 { "" } else { "s" };
+                eprintln!("{} problem{s} in {}", errors.len(), file.display());
             }
             other => eprintln!("error: {other}"),
         }

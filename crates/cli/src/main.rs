@@ -69,6 +69,11 @@ enum Command {
     },
     /// Print the JSON Schema of the model file
     Schema,
+    /// Read the network of another program into a model file
+    Import {
+        #[command(subcommand)]
+        format: ImportFormat,
+    },
     /// Make the HTML report of recorded results
     Report {
         /// results.mcap of a run
@@ -76,6 +81,21 @@ enum Command {
         /// The report
         #[arg(long, value_name = "FILE", default_value = "report.html")]
         out: PathBuf,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+enum ImportFormat {
+    /// An EPANET input file; lists what the model does not say
+    Epanet {
+        /// Input file (.inp)
+        file: PathBuf,
+        /// The model file
+        #[arg(long, value_name = "MODEL")]
+        out: PathBuf,
+        /// Only the state at t = 0, without schedules
+        #[arg(long)]
+        steady: bool,
     },
 }
 
@@ -90,6 +110,11 @@ fn main() -> ExitCode {
             commands::check::check(&model, expand, explain_defaults, signals)
         }
         Command::Schema => commands::schema::schema(),
+        Command::Import { format } => match format {
+            ImportFormat::Epanet { file, out, steady } => {
+                commands::import::epanet(&file, &out, steady)
+            }
+        },
         Command::Report { results, out } => commands::report::report(&results, &out),
     };
     match result {

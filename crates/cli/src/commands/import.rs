@@ -1,0 +1,57 @@
+//! `anergy import`: networks of other programs as model files.
+
+use crate::failure::Failure;
+use crate::output::line;
+use anergy_import::epanet::{self, EpanetOptions};
+use anergy_import::{Import, ImportError, NoteKind};
+use std::path::Path;
+
+/// Notes of one kind that are printed; the model file has all.
+const PRINTED: usize = 20;
+
+/// Imports an EPANET input file.
+pub fn epanet(file: &Path, out: &Path, steady: bool) -> Result<(), Failure> {
+    let result = epanet::import(&read(file)?, EpanetOptions { steady });
+    write(file, out, result)
+}
+
+fn read(file: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(file).map_err(|error| Failure::file("cannot read", file, &error))
+}
+
+/// Writes the model file and says what it leaves out.
+fn write(file: &Path, out: &Path, result: Result<Import, Vec<ImportError>>) -> Result<(), Failure> {
+    let import = result.map_err(|errors| Failure::Import { file: file.to_owned(), errors })?;
+    std::fs::write(out, &import.model)
+        .map_err(|error| Failure::file("cannot write", out, &error))?;
+    line!(
+        "{}: {} nodes, {} edges, {} schedules from {}",
+        out.display(),
+        import.nodes,
+        import.edges,
+        import.schedules,
+        file.display()
+    );
+    for (kind, title) in [
+        (NoteKind::Problem, "wrong in the model"),
+        (NoteKind::NotTranslated, "not translated"),
+        (NoteKind::Changed, "said otherwise"),
+    ] {
+        let mut notes = import.notes.iter().filter(|note| note.kind == kind);
+        let count = notes.clone().count();
+        if count > 0 {
+            line!("\n{title}: {count}");
+        }
+        for note in notes.by_ref().take(PRINTED) {
+            match note.line {
+                Some(number) => line!("  {}:{number}: {}", file.display(), note.text),
+                None => line!("  {}", note.text),
+            }
+        }
+        let more = notes.count();
+        if more > 0 {
+            line!("  and {more} more, listed at the head of {}", out.display());
+        }
+    }
+    Ok(())
+}

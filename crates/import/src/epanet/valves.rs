@@ -1,0 +1,108 @@
+//! Valves of an EPANET network.
+
+use super::network::{Link, LinkKind, Status, ValveKind};
+use super::translate::{LEAST_MINOR_LOSS, VELOCITY_M_S, Writer, kv_m3_h, m_flow_at_velocity};
+use crate::NoteKind;
+
+/// Share of the flow at 1 m/s below which the loss of a valve is regularised.
+const DELTA_M: f64 = 1e-3;
+
+impl Writer<'_> {
+    pub(super) fn valve(&mut self, i: usize) {
+        let network = self.network;
+        let link = &network.links[i];
+        let LinkKind::Valve { kind, diameter_m, minor_loss } = link.kind else { return };
+        // What no edge can say: without it the network is another one, and this must be read.
+        if matches!(kind, ValveKind::Gpv | ValveKind::Pcv) && link.status == Status::Active {
+            let what = "left out: there is no edge with a tabulated loss";
+            link.note(self.text, NoteKind::Problem, what);
+            return;
+        }
+        let ends = self.guarded(i, false);
+        if link.status == Status::Open {
+            self.throttle(link, &ends, minor_loss);
+            return;
+        }
+        match kind {
+            ValveKind::Prv | ValveKind::Psv => self.pressure_valve(link, kind, &ends, minor_loss),
+            ValveKind::Fcv => {
+                let (density, flow) = (self.options.density_kg_m3(), self.options.flow_m3_s);
+                let kvs_m3_h = self.kvs_m3_h(diameter_m, minor_loss);
+                self.text
+                    .edge(&link.id, "flow_limiter", &ends[0], &ends[1])
+                    .number("kvs_m3_h", kvs_m3_h)
+                    .number("m_flow_set_kg_s", link.setting * flow * density);
+            }
+            ValveKind::Tcv => self.throttle(link, &ends, link.setting),
+            ValveKind::Pbv => {
+                let drop = link.setting * self.options.pressure_m() * self.options.pa_m();
+                self.text
+                    .edge(&link.id, "pressure_source", &ends[0], &ends[1])
+                    .number("head_pa", -drop);
+                let what = "a pressure source that takes its pressure away at any flow";
+                link.note(self.text, NoteKind::Changed, what);
+            }
+            ValveKind::Gpv | ValveKind::Pcv => {}
+        }
+    }
+
+    /// A resistance with a loss coefficient.
+    fn throttle(&mut self, link: &Link, ends: &[String; 2], coefficient: f64) {
+        let LinkKind::Valve { diameter_m, .. } = link.kind else { return };
+        let density = self.options.density_kg_m3();
+        let loss_pa = self.loss_pa(coefficient);
+        self.text
+            .edge(&link.id, "resistance", &ends[0], &ends[1])
+            .number("dp_nominal_pa", loss_pa)
+            .number("m_flow_nominal_kg_s", m_flow_at_velocity(diameter_m, density))
+            .number("delta_m", DELTA_M);
+    }
+
+    /// Loss at 1 m/s.
+    fn loss_pa(&self, coefficient: f64) -> f64 {
+        let density = self.options.density_kg_m3();
+        let coefficient = self.options.loss_coefficient(coefficient).max(LEAST_MINOR_LOSS);
+        coefficient * density / 2.0 * VELOCITY_M_S * VELOCITY_M_S
+    }
+
+    fn kvs_m3_h(&self, diameter_m: f64, minor_loss: f64) -> f64 {
+        let density = self.options.density_kg_m3();
+        kv_m3_h(self.loss_pa(minor_loss), m_flow_at_velocity(diameter_m, density), density)
+    }
+
+    /// A valve whose opening follows from the pressure behind it (PRV) or before it (PSV).
+    fn pressure_valve(
+        &mut self,
+        link: &Link,
+        kind: ValveKind,
+        ends: &[String; 2],
+        minor_loss: f64,
+    ) {
+        let LinkKind::Valve { diameter_m, .. } = link.kind else { return };
+        let node = if kind == ValveKind::Prv { link.to } else { link.from };
+        let node = &self.network.nodes[node];
+        if node.head_m().is_some() {
+            let what = format!("left out: it cannot hold the pressure of \"{}\"", node.id);
+            link.note(self.text, NoteKind::Problem, &what);
+            return;
+        }
+        let kvs_m3_h = self.kvs_m3_h(diameter_m, minor_loss);
+        let pressure_pa = link.setting * self.options.pressure_m() * self.options.pa_m();
+        self.text
+            .edge(&link.id, "valve", &ends[0], &ends[1])
+            .number("kvs_m3_h", kvs_m3_h)
+            .text("characteristic", "linear")
+            .number("leakage", 0.0)
+            .number("opening", 1.0)
+            .number("m_flow_nominal_kg_s", m_flow_at_velocity(diameter_m, 1000.0));
+        let control = format!("{}.control", link.id);
+        self.text
+            .entry("prescribed")
+            .text("id", &control)
+            .text("quantity", &format!("{}.p_pa", node.id))
+            .number("value", pressure_pa)
+            .text("free", &format!("{}.opening", link.id));
+        let what = format!("its opening is found so that \"{}\" has its pressure", node.id);
+        link.note(self.text, NoteKind::Changed, &what);
+    }
+}
