@@ -46,8 +46,12 @@ impl Reach {
                 }
             }
         }
-        let links =
+        let links: Vec<bool> =
             network.links.iter().zip(open).map(|(link, open)| open && nodes[link.from]).collect();
+        // A given head from which nothing leads away is no part of the model.
+        for (node, links) in links_of.iter().enumerate() {
+            nodes[node] &= !links.is_empty();
+        }
         Self { nodes, links, links_of }
     }
 
@@ -99,6 +103,12 @@ impl Reach {
 
     /// Nodes without a way to a given head.
     pub fn note_cut_off(&self, network: &Network, options: &Options, text: &mut ModelText) {
+        for (node, _) in network.nodes.iter().zip(&self.nodes).filter(|(_, reached)| !**reached) {
+            if node.head_m().is_some() {
+                let what = format!("left out: nothing open leads to \"{}\" at t = 0", node.id);
+                text.note(NoteKind::NotTranslated, node.line, what);
+            }
+        }
         let cut_off = |thirsty: bool| {
             let nodes = network.nodes.iter().zip(&self.nodes).filter(|(_, reached)| !**reached);
             nodes.map(|(node, _)| node).filter(move |node| match &node.kind {

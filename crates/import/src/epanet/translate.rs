@@ -18,6 +18,8 @@ const CHECK_VALVE_LEAKAGE: f64 = 1e-11;
 pub(super) const LEAST_MINOR_LOSS: f64 = 0.01;
 /// Largest roughness of a pipe over its diameter.
 const ROUGHEST: f64 = 0.1;
+/// A smaller pipe is a placeholder.
+const LEAST_DIAMETER_M: f64 = 1e-3;
 /// Roughness of a pipe that does not give one.
 const DEFAULT_ROUGHNESS_M: f64 = 5e-5;
 /// Level of a full or empty tank, m.
@@ -181,6 +183,10 @@ impl Writer<'_> {
             let what = format!(
                 "its roughness of {roughness:.3} m is more than a tenth of its diameter, which is taken"
             );
+            link.note(self.text, NoteKind::Problem, &what);
+        }
+        if diameter_m < LEAST_DIAMETER_M {
+            let what = format!("its diameter of {} mm lets nothing through", 1e3 * diameter_m);
             link.note(self.text, NoteKind::Problem, &what);
         }
         let zeta = self.options.loss_coefficient(minor_loss);
