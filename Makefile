@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python validate bench bench-peers instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python validate peers bench bench-peers instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -41,6 +41,17 @@ test-python: python ## Python tests, stub check and examples
 validate: ## Slow cases, peers, large random sets
 	PROPTEST_CASES=2000 cargo test --release -p anergy-tests --test every_element --test random_networks
 
+.venv-peers/.installed:
+	$(PYTHON) -m venv .venv-peers
+	.venv-peers/bin/python -m pip install --quiet --disable-pip-version-check \
+		wntr==1.5.0 epyt==2.3.5.3 owa-epanet==2.3.5 "pandapipes>=0.16,<0.17" numba
+	touch $@
+
+peers: .venv-peers/.installed ## Imported networks against EPANET and pandapipes, tables into docs
+	cargo build --release -p anergy
+	.venv-peers/bin/python tests/peers/epanet_import.py --out docs/src/validation/epanet.md
+	.venv-peers/bin/python tests/peers/pandapipes_import.py --out docs/src/validation/pandapipes.md
+
 bench: ## Criterion benches
 	cargo bench -p anergy-benches
 
@@ -59,4 +70,4 @@ demo: ## The main job on the embedded study
 
 clean: ## Remove what was built
 	cargo clean
-	rm -rf $(VENV) results
+	rm -rf $(VENV) .venv-peers results

@@ -152,6 +152,39 @@ fn compare(case: &Value) {
     );
 }
 
+/// A pump into a network with all kinds of pipes and a throttle, in litres per second.
+fn input_file(law: &str, roughness: &str) -> String {
+    format!(
+        "[JUNCTIONS]\nA 10 5\nB 5 3\nC 0 2\n[RESERVOIRS]\nR 20\n[TANKS]\nT 55 5 0 9 10 0\n\
+         [PUMPS]\nU R A HEAD c\n[PIPES]\nP A B 500 150 {roughness} 1\nQ B C 300 100 {roughness}\n\
+         S B T 400 100 {roughness} 0 CV\n[VALVES]\nV A C 100 TCV 200\n[CURVES]\nc 20 60\n\
+         [OPTIONS]\nUnits LPS\nHeadloss {law}\n[TIMES]\nDuration 2\n[PATTERNS]\n1 1 2\n"
+    )
+}
+
+#[test]
+fn an_imported_file_is_a_model_that_solves() {
+    for (law, roughness) in [("H-W", "110"), ("D-W", "0.1"), ("C-M", "0.012")] {
+        let text = input_file(law, roughness);
+        let import = anergy_import::epanet::import(text.as_bytes(), Default::default())
+            .unwrap_or_else(|errors| panic!("{errors:?}"));
+        let model = Model::from_toml(&import.model, Path::new("."))
+            .unwrap_or_else(|problems| panic!("{}", problems.render(&import.model)));
+        let steady = steady::solve(&model).unwrap_or_else(|error| panic!("{law}: {error}"));
+        let flow = |id: &str| steady.edges.iter().find(|edge| edge.id == id).unwrap().m_flow_kg_s;
+        // All that the pump gives is taken or stored: 5 + 3 + 2 l/s.
+        assert!((flow("U") - flow("S") - 10.0).abs() < 1e-6, "{law}: {}", flow("U"));
+        assert!((flow("P") + flow("V") + 5.0 - flow("U")).abs() < 1e-6);
+        // h = 80.0004 - r q^n with h(20 l/s) = 60.
+        let dp = steady.edges.iter().find(|edge| edge.id == "U").unwrap().dp_pa;
+        let gravity = if law == "D-W" { 9.81456 } else { 9.81 };
+        let expected = 80.0004 - 20.0004 * (flow("U") / 20.0).powf(1.999_978);
+        // A lies 10 m below the reservoir.
+        let head = -dp / 1000.0 / gravity - 10.0;
+        assert!((head - expected).abs() < 1e-3, "{law}: {head} m, expected {expected} m");
+    }
+}
+
 #[test]
 fn snapshots_agree() {
     let Some(data) = reference_data("epanet") else { return };

@@ -17,6 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("control", &["core"]),
     ("recording", &["core"]),
     ("report", &["core"]),
+    ("import", &[]),
     ("ems", &["core", "prosumer", "control"]),
     ("simulation", &["core", "network", "prosumer", "control", "ems"]),
     ("discrepancy", &["core", "simulation", "recording"]),
@@ -25,7 +26,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
 ];
 
 /// For what stands on top.
-const EVERYTHING: [&str; 9] = [
+const EVERYTHING: [&str; 10] = [
+    "import",
     "core",
     "network",
     "prosumer",

@@ -5,11 +5,19 @@ use super::reach::Reach;
 use super::translate::Writer;
 use crate::NoteKind;
 
+/// Periods of a schedule, at most.
+const LONGEST: f64 = 100_000.0;
+
 impl Writer<'_> {
     /// A schedule for each demand, reservoir and pump that changes until the end.
     pub(super) fn schedules(&mut self, reach: &Reach) {
         let (network, options) = (self.network, self.options);
         if options.duration_s <= 0.0 {
+            return;
+        }
+        if options.duration_s / options.pattern_step_s > LONGEST {
+            let what = format!("patterns: there are more than {LONGEST} periods");
+            self.text.note(NoteKind::Problem, None, what);
             return;
         }
         let (pa_m, density) = (options.pa_m(), options.density_kg_m3());

@@ -11,9 +11,12 @@ use std::f64::consts::PI;
 /// Velocity at which the loss of a fitting is written, m/s.
 pub(super) const VELOCITY_M_S: f64 = 1.0;
 /// Loss of an open check valve at that velocity, Pa: nothing beside a pipe.
-const CHECK_VALVE_PA: f64 = 0.01;
-/// Flow coefficient backwards over that forwards.
-const CHECK_VALVE_LEAKAGE: f64 = 1e-11;
+const CHECK_VALVE_PA: f64 = 0.1;
+/// Share of the flow at that velocity below which it is linear: a steep law would leave little of the
+/// numbers beside the shut valve.
+const CHECK_VALVE_DELTA_M: f64 = 1.0;
+/// Flow back through a shut check valve at 1 bar, kg/s: half of what EPANET lets through a closed link.
+const CHECK_VALVE_LEAK_KG_S: f64 = 1e-4;
 /// A fitting without loss has this coefficient: 0.5 mm of water at 1 m/s.
 pub(super) const LEAST_MINOR_LOSS: f64 = 0.01;
 /// Largest roughness of a pipe over its diameter.
@@ -254,13 +257,15 @@ impl Writer<'_> {
         let edge = self.text.new_edge_id(&format!("{}.{name}_valve", link.id));
         let m_flow = self.nominal_m_flow_kg_s(link);
         let density = self.options.density_kg_m3();
+        let leakage = CHECK_VALVE_LEAK_KG_S / (m_flow * (1e5 / CHECK_VALVE_PA).sqrt());
         self.text.node(&between).number("elevation_m", elevation);
         let (from, to) = if into { (between.as_str(), node) } else { (node, between.as_str()) };
         self.text
             .edge(&edge, "check_valve", from, to)
             .number("kvs_m3_h", kv_m3_h(CHECK_VALVE_PA, m_flow, density))
-            .number("leakage", CHECK_VALVE_LEAKAGE)
-            .number("m_flow_nominal_kg_s", m_flow);
+            .number("leakage", leakage)
+            .number("m_flow_nominal_kg_s", m_flow)
+            .number("delta_m", CHECK_VALVE_DELTA_M);
         between
     }
 

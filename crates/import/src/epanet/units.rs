@@ -319,7 +319,7 @@ pub(super) fn time_s(words: &[&str]) -> Option<f64> {
         () if begins(unit, "PM") && hours < 12.0 => hours + 12.0,
         () => hours,
     };
-    Some((hours * 3600.0).round())
+    Some((hours * 3600.0).round()).filter(|seconds| seconds.is_finite())
 }
 
 #[cfg(test)]
