@@ -16,6 +16,7 @@
 mod assemble;
 mod error;
 mod ideal;
+mod position;
 mod prescribed;
 
 use crate::graph::{Edge, Network};
@@ -112,6 +113,8 @@ pub struct HydraulicSolver {
     stand: Vec<Stand>,
     /// Sign of each prescribed flow in the free edge, where it carries it itself.
     carried: Vec<Option<f64>>,
+    /// Whether each prescription was tried with its actuator open in this solve.
+    opened: Vec<bool>,
 }
 
 impl HydraulicSolver {
@@ -139,6 +142,7 @@ impl HydraulicSolver {
                 vec![Stand::Own; edges]
             },
             carried: prescribed::carried(network),
+            opened: vec![false; network.prescriptions.len()],
         })
     }
 

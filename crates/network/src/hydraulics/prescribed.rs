@@ -11,18 +11,19 @@
 //! own law, until the given quantity is passed from there. A prescription changes so at most a few times
 //! in a solve, the last times one at a time.
 
+use super::position::{Place, head_by_position, limits, own_law, place, present, tolerance};
 use super::{HydraulicError, HydraulicReport, HydraulicSolver};
 use crate::graph::{Edge, Network, NodeKind, Quantity};
 use crate::state::{Hold, NetworkState, Prescribed};
-use crate::two_port::{Characteristic, EdgeState};
+use crate::two_port::Characteristic;
 use anergy_core::ids::EdgeId;
 use anergy_core::linear::Linear;
 use nalgebra::{DMatrix, DVector};
 
 /// A prescribed flow and pressure are met within these.
-const FLOW_KG_S: f64 = 1e-8;
-const PRESSURE_PA: f64 = 1e-2;
-const RELATIVE: f64 = 1e-7;
+pub(super) const FLOW_KG_S: f64 = 1e-8;
+pub(super) const PRESSURE_PA: f64 = 1e-2;
+pub(super) const RELATIVE: f64 = 1e-7;
 const MAX_NEWTON: usize = 60;
 /// Rounds in which all prescriptions may change between held and limit, and rounds with one change each.
 const ROUNDS_TOGETHER: usize = 4;
@@ -110,14 +111,6 @@ fn series_sign(
     None
 }
 
-/// Where the law of an edge passes through a flow and a pressure difference.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Place {
-    At(f64),
-    Below,
-    Above,
-}
-
 impl HydraulicSolver {
     /// Solves with every prescription held or at a limit of its actuator.
     pub(super) fn solve_prescribed(
@@ -129,12 +122,16 @@ impl HydraulicSolver {
         self.known = false;
         // A snapshot continues bit for bit: the stands begin from the state alone.
         self.stand.fill(Stand::Own);
+        self.opened.fill(false);
         let mut iterations = 0;
         for round in 0..ROUNDS_TOGETHER + ROUNDS_EACH * count {
             for k in 0..count {
                 self.take_stand(network, state, k);
             }
-            let report = self.solve_heads(network, state, &mut iterations)?;
+            let report = match self.solve_heads(network, state, &mut iterations) {
+                Err(HydraulicError::Unbalanced { .. }) if self.reopen(network, state) => continue,
+                other => other?,
+            };
             let mut changes = self.changes(network, state);
             if changes.is_empty() {
                 return Ok(HydraulicReport { iterations, ..report });
@@ -290,13 +287,23 @@ impl HydraulicSolver {
                     Place::At(position) => state.place_actuator(edge, position),
                     Place::Below => changes.push((f64::INFINITY, k, Hold::AtMin)),
                     Place::Above => changes.push((f64::INFINITY, k, Hold::AtMax)),
+                    Place::Driven => {
+                        // More is wanted than comes by itself: open; less: shut; unless that was wrong.
+                        self.system.respond(edge, &self.laws);
+                        let by_head = self.response(prescription.quantity, prescription.free);
+                        let open = (state.m_flow_kg_s[edge] * by_head > 0.0) != self.opened[k];
+                        self.opened[k] |= open;
+                        let hold = if open { Hold::AtMax } else { Hold::AtMin };
+                        changes.push((f64::INFINITY, k, hold));
+                    }
                 }
                 continue;
             }
             // Would moving the actuator away from its limit bring the quantity closer?
             self.system.respond(edge, &self.laws);
             let by_head = self.response(prescription.quantity, prescription.free);
-            let wanted = error * by_head * head_by_position(network, state, edge);
+            let dp = self.system.driving_pa(state, edge);
+            let wanted = error * by_head * head_by_position(network, state, edge, dp);
             let inwards = if hold == Hold::AtMin { wanted > 0.0 } else { wanted < 0.0 };
             if inwards && error.abs() > 1.0 {
                 changes.push((error.abs(), k, Hold::Held));
@@ -304,6 +311,21 @@ impl HydraulicSolver {
         }
         changes.sort_by(|a, b| b.0.total_cmp(&a.0));
         changes.into_iter().map(|(_, k, hold)| (k, hold)).collect()
+    }
+
+    /// A part got cut off because free edges around it were shut: opens them. False when there is none.
+    fn reopen(&mut self, network: &Network, state: &mut NetworkState) -> bool {
+        let mut any = false;
+        for (k, prescription) in network.prescriptions.iter().enumerate() {
+            let shut = state.prescribed[k].hold == Hold::AtMin && !self.opened[k];
+            if shut && self.system.joins_floating(network, prescription.free.index()) {
+                state.prescribed[k].hold = Hold::AtMax;
+                self.opened[k] = true;
+                any = true;
+            }
+        }
+        state.invalidate_hydraulics();
+        any
     }
 
     /// A free edge between parts of which one has no pressure level has no defined position.
@@ -318,82 +340,4 @@ impl HydraulicSolver {
         }
         Ok(())
     }
-}
-
-fn limits(network: &Network, edge: usize) -> (f64, f64) {
-    network.edges[edge].element.actuator().map_or((0.0, 0.0), |a| (a.min, a.max))
-}
-
-fn own_law(network: &Network, edge: usize, m: f64, state: EdgeState) -> Option<Linear> {
-    match network.edges[edge].characteristic(m, &state) {
-        Characteristic::PressureLoss(law) => Some(law),
-        _ => None,
-    }
-}
-
-/// The present value of a quantity.
-fn present(network: &Network, state: &NetworkState, quantity: Quantity) -> f64 {
-    match quantity {
-        Quantity::MassFlow(edge) => state.m_flow_kg_s[edge.index()],
-        Quantity::PressureDifference(edge) => state.dp_pa(network, edge.index()),
-        Quantity::Pressure(node) => state.p_pa[node.index()],
-    }
-}
-
-fn tolerance(quantity: Quantity, target: f64) -> f64 {
-    match quantity {
-        Quantity::MassFlow(_) => FLOW_KG_S + RELATIVE * target.abs(),
-        _ => PRESSURE_PA + RELATIVE * target.abs(),
-    }
-}
-
-/// The loss of an edge at a position and the present flow, Pa; infinite for a tightly closed one.
-fn loss_at(network: &Network, state: &NetworkState, edge: usize, position: f64) -> f64 {
-    let m = state.m_flow_kg_s[edge];
-    let at = EdgeState { position, ..state.edge_state(network, edge) };
-    own_law(network, edge, m, at).map_or(f64::INFINITY.copysign(m), |law| law.value)
-}
-
-/// Sign of the change of head by position (head = minus loss).
-fn head_by_position(network: &Network, state: &NetworkState, edge: usize) -> f64 {
-    let (min, max) = limits(network, edge);
-    let (low, high) = (loss_at(network, state, edge, min), loss_at(network, state, edge, max));
-    (low - high).signum()
-}
-
-/// The position with the present flow and the pressure difference `dp`: bisection with secants.
-fn place(network: &Network, state: &NetworkState, edge: usize, dp: f64) -> Place {
-    let (min, max) = limits(network, edge);
-    let miss = |position: f64| loss_at(network, state, edge, position) - dp;
-    let allowed = PRESSURE_PA + RELATIVE * dp.abs();
-    let (mut low, mut high) = (min, max);
-    let (mut low_miss, mut high_miss) = (miss(low), miss(high));
-    if low_miss.abs() <= allowed && high_miss.abs() <= allowed {
-        // Nothing flows and nothing drives: any position will do.
-        return Place::At(state.position[edge].clamp(min, max));
-    }
-    if high_miss.abs() <= allowed {
-        return Place::At(max);
-    }
-    if low_miss.abs() <= allowed {
-        return Place::At(min);
-    }
-    if low_miss.signum() == high_miss.signum() {
-        return if high_miss.abs() < low_miss.abs() { Place::Above } else { Place::Below };
-    }
-    for i in 0..200 {
-        let secant = low - low_miss * (high - low) / (high_miss - low_miss);
-        let inside = secant > low && secant < high && i % 3 != 2;
-        let middle = if inside { secant } else { 0.5 * (low + high) };
-        let middle_miss = miss(middle);
-        if middle_miss == 0.0 || high - low < 1e-15 * max {
-            return Place::At(middle);
-        }
-        if middle_miss.signum() == low_miss.signum() {
-            (low, low_miss) = (middle, middle_miss);
-        } else {
-            (high, high_miss) = (middle, middle_miss);
-        }
-    }
-    Place::At(if low_miss.abs() < high_miss.abs() { low } else { high })
 }

@@ -5,6 +5,9 @@ use crate::graph::{Network, NodeKind};
 use crate::state::NetworkState;
 use anergy_core::error::FactorError;
 
+/// Share of the ambient temperature at a node in the steady state, at least: more than rounding.
+const LEAST_RELAXATION: f64 = 1e-12;
+
 impl Transport {
     /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring.
     pub(super) fn collect_inflows(&mut self, network: &Network, state: &NetworkState) {
@@ -96,7 +99,7 @@ impl Transport {
             // exchange of heat has a temperature: T (m + M/t_relax) = m T_mix + M/t_relax T_ambient.
             None => {
                 let relaxing = water_kg / NODE_RELAXATION_S;
-                relaxing / (relaxing + inflow)
+                (relaxing / (relaxing + inflow)).max(LEAST_RELAXATION)
             }
         }
     }
