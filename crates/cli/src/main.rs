@@ -97,6 +97,17 @@ enum ImportFormat {
         #[arg(long)]
         steady: bool,
     },
+    /// A net of pandapipes.to_json (water); lists what the model does not say
+    Pandapipes {
+        /// Net (.json)
+        file: PathBuf,
+        /// The model file
+        #[arg(long, value_name = "MODEL")]
+        out: PathBuf,
+        /// Friction law, which the file does not say
+        #[arg(long, value_enum, default_value = "colebrook")]
+        friction: commands::import::FrictionLaw,
+    },
 }
 
 fn main() -> ExitCode {
@@ -113,6 +124,9 @@ fn main() -> ExitCode {
         Command::Import { format } => match format {
             ImportFormat::Epanet { file, out, steady } => {
                 commands::import::epanet(&file, &out, steady)
+            }
+            ImportFormat::Pandapipes { file, out, friction } => {
+                commands::import::pandapipes(&file, &out, friction)
             }
         },
         Command::Report { results, out } => commands::report::report(&results, &out),

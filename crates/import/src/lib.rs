@@ -5,6 +5,7 @@
 
 pub mod epanet;
 mod model_text;
+pub mod pandapipes;
 
 use std::fmt;
 use thiserror::Error;

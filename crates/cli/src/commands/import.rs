@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::output::line;
 use anergy_import::epanet::{self, EpanetOptions};
+use anergy_import::pandapipes::{self, Friction};
 use anergy_import::{Import, ImportError, NoteKind};
 use std::path::Path;
 
@@ -13,6 +14,24 @@ const PRINTED: usize = 20;
 pub fn epanet(file: &Path, out: &Path, steady: bool) -> Result<(), Failure> {
     let result = epanet::import(&read(file)?, EpanetOptions { steady });
     write(file, out, result)
+}
+
+/// Friction laws of pandapipes.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum FrictionLaw {
+    /// friction_model="colebrook"
+    Colebrook,
+    /// friction_model="swamee-jain"
+    SwameeJain,
+}
+
+/// Imports a net of pandapipes.
+pub fn pandapipes(file: &Path, out: &Path, friction: FrictionLaw) -> Result<(), Failure> {
+    let friction = match friction {
+        FrictionLaw::Colebrook => Friction::Colebrook,
+        FrictionLaw::SwameeJain => Friction::SwameeJain,
+    };
+    write(file, out, pandapipes::import(&read(file)?, friction))
 }
 
 fn read(file: &Path) -> Result<Vec<u8>, Failure> {
