@@ -38,7 +38,7 @@ pub fn build(model: &Model) -> Result<Arc<Plan>, Diagnostics> {
     let plan = builder.plan();
     match plan {
         Some(plan) if builder.problems.is_empty() => Ok(Arc::new(plan)),
-        _ => Err(Diagnostics(builder.problems).without_repetition()),
+        _ => Err(model.tables.located(builder.problems)),
     }
 }
 

@@ -53,5 +53,6 @@ pub mod run;
 pub mod simulation;
 pub mod state;
 pub mod steady;
+pub mod table;
 mod temperatures;
 mod wording;

@@ -7,6 +7,7 @@ use crate::diagnostic::Diagnostics;
 use crate::model_file::{
     InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry, RunEntry,
 };
+use crate::table::Tables;
 use anergy_control::controllers::ControllerParams;
 use anergy_core::medium::Medium;
 use anergy_network::elements::ElementParams;
@@ -199,6 +200,8 @@ pub struct Model {
     pub name: String,
     /// The text it was read from.
     pub text: String,
+    /// The tables it was read from.
+    pub tables: Tables,
     /// How to run it.
     pub run: RunEntry,
     /// The water.

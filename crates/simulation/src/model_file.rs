@@ -8,8 +8,10 @@ pub mod expand;
 pub mod read;
 pub mod schema;
 pub mod series;
+mod tables;
 
 pub use duration::Duration;
+pub use tables::NetworkEntry;
 
 use anergy_core::clock::Time;
 use schemars::JsonSchema;

@@ -90,6 +90,18 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("extraction_valve", "{ opening = 0.5 }"),
 ];
 
+/// What a part of a station is in the registry of elements.
+pub(super) fn part_kind(part: &str) -> Option<&'static str> {
+    match part {
+        "stub" => Some("pipe"),
+        "heat_exchanger" => Some("heat_exchanger"),
+        "feed_in_pump" => Some("pump"),
+        "feed_in_check_valve" => Some("check_valve"),
+        "extraction_valve" => Some("valve"),
+        _ => None,
+    }
+}
+
 /// The parts of a kind of station.
 pub(super) fn parts_of(kind: StationKind) -> &'static [&'static str] {
     match kind {

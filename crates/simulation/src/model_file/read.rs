@@ -2,13 +2,16 @@
 
 mod components;
 mod composites;
+mod station_types;
 
-use super::expand::Plain;
+use super::expand::{self, Plain};
+use super::tables::Rows;
 use super::*;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::document::{Tree, TreeKind};
 use crate::fields::{Reader, SiTable};
 use crate::model::*;
+use crate::table::Tables;
 use crate::temperatures::{SURROUNDINGS, Temperatures, WATER};
 use crate::wording::refused;
 use anergy_core::medium::Medium;
@@ -24,6 +27,8 @@ pub(super) const SECTIONS: &[&str] = &[
     "fluid",
     "ground",
     "pipe_type",
+    "network",
+    "station_type",
     "site",
     "trench",
     "station",
@@ -47,11 +52,14 @@ pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> 
         reader: Reader::default(),
         tree,
         dir,
+        rows: Rows::new(),
+        tables: Tables::default(),
         sites: HashMap::new(),
         wrong_sites: HashSet::new(),
+        sites_unread: false,
     };
     let model = reader.model(text);
-    let problems = Diagnostics(reader.reader.problems).without_repetition();
+    let problems = reader.tables.located(reader.reader.problems);
     match model {
         Some(model) if problems.0.is_empty() => Ok(model),
         _ => Err(problems),
@@ -62,9 +70,15 @@ struct ModelReader<'a> {
     reader: Reader,
     tree: &'a Tree,
     dir: &'a Path,
+    /// Entries that come from tables and station types, by section.
+    rows: Rows,
+    /// Their places.
+    tables: Tables,
     sites: HashMap<String, SiteEntry>,
     /// Sites that are there, but wrong and reported.
     wrong_sites: HashSet<String>,
+    /// A table of sites that could not be read whole, and is reported.
+    sites_unread: bool,
 }
 
 /// The stations of a model file.
@@ -100,6 +114,8 @@ impl ModelReader<'_> {
         let medium = fluid.as_ref().and_then(|(fluid, place)| self.medium(fluid, place));
         let (mut nodes, mut edges) = (Vec::new(), Vec::new());
         let mut interfaces = Vec::new();
+        self.network(text);
+        self.station_types();
         self.read_sites(&mut nodes);
         self.trenches(&mut edges);
         let mut stations = self.stations(&mut nodes, &mut edges, &mut interfaces);
@@ -123,6 +139,7 @@ impl ModelReader<'_> {
         }
         let model = Model {
             text: text.to_owned(),
+            tables: self.tables.clone(),
             units: self.units(&stations),
             interfaces,
             controllers: self.controllers(),
@@ -176,8 +193,14 @@ impl ModelReader<'_> {
         Some((entry, place(&what, tree, &table)))
     }
 
-    /// The entries of a section that can occur several times.
+    /// The entries of a section that can occur several times, and those of the tables.
     fn items(&mut self, section: &str) -> Vec<Tree> {
+        let mut items = self.written(section);
+        items.extend(self.rows.remove(section).unwrap_or_default());
+        items
+    }
+
+    fn written(&mut self, section: &str) -> Vec<Tree> {
         match self.tree.get(section) {
             None => Vec::new(),
             Some(tree) => match &tree.kind {

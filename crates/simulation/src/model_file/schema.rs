@@ -34,6 +34,10 @@ pub fn schema() -> Value {
         object.remove("required");
     }
     let station = station_schema();
+    let mut station_type = station.clone();
+    if let Some(object) = station_type.as_object_mut() {
+        object.insert("required".into(), json!(["kind"]));
+    }
     let reference = entry(&schema_for!(PressureReferenceEntry), &[]);
     let properties = json!({
         "format": { "const": 1, "description": "Version of the file format" },
@@ -42,6 +46,8 @@ pub fn schema() -> Value {
         "fluid": entry(&schema_for!(FluidEntry), &[]),
         "ground": entry(&schema_for!(GroundEntry), &[]),
         "pipe_type": { "type": "object", "additionalProperties": pipe_type },
+        "network": entry(&schema_for!(NetworkEntry), &[]),
+        "station_type": { "type": "object", "additionalProperties": station_type },
         "site": list(entry(&schema_for!(SiteEntry), &[])),
         "trench": list(trench),
         "station": list(station),
@@ -95,7 +101,13 @@ fn station_schema() -> Value {
     };
     let mut stub = part("pipe");
     stub["properties"]["pipe"] = json!({ "type": "string", "description": "Name of a pipe_type" });
-    let mut station = entry(&schema_for!(StationEntry), &[]);
+    let own = [
+        ("type", json!({ "type": "string", "description": "Name of a station_type" })),
+        ("unit", json!({ "type": "object", "description": "The unit behind it, like a [[unit]]" })),
+    ];
+    let mut station = entry(&schema_for!(StationEntry), &own);
+    // A type may say what it is.
+    station["required"] = json!(["site"]);
     for (field, schema) in [
         ("stub", stub),
         ("heat_exchanger", part("heat_exchanger")),

@@ -1,6 +1,7 @@
 //! Columns of CSV files as signals over time.
 
 use super::SeriesEntry;
+use super::tables::separator_byte;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::Tree;
 use jiff::Timestamp;
@@ -22,18 +23,13 @@ pub(super) fn load(
 ) -> Result<Column, Diagnostic> {
     let at = |field: &str| tree.get(field).and_then(|tree| tree.span.clone());
     let wrong = |field: &str, message: String| Diagnostic::new(message, at(field));
-    let separator = u8::try_from(entry.separator)
-        .ok()
-        .filter(|byte| {
-            byte.is_ascii() && !byte.is_ascii_alphanumeric() && !b".+-#\"\r\n".contains(byte)
-        })
-        .ok_or_else(|| {
-            let message = format!(
-                "series of \"{}\": separator = {:?} cannot separate numbers",
-                entry.signal, entry.separator
-            );
-            wrong("separator", message).with_hint("usual are \",\", \";\" and \"\\t\"")
-        })?;
+    let separator = separator_byte(entry.separator).ok_or_else(|| {
+        let message = format!(
+            "series of \"{}\": separator = {:?} cannot separate numbers",
+            entry.signal, entry.separator
+        );
+        wrong("separator", message).with_hint("usual are \",\", \";\" and \"\\t\"")
+    })?;
     let path = dir.join(&entry.file);
     let file = std::fs::File::open(&path).map_err(|error| {
         wrong("file", format!("series \"{}\": cannot read {}: {error}", entry.signal, entry.file))

@@ -64,7 +64,7 @@ impl ModelReader<'_> {
     fn site(&mut self, what: &str, tree: &Tree, field: &str) -> Option<SiteEntry> {
         let name = tree.text(field)?;
         let found = self.sites.get(name).cloned();
-        if found.is_none() && !self.wrong_sites.contains(name) {
+        if found.is_none() && !self.wrong_sites.contains(name) && !self.sites_unread {
             let span = tree.get(field).and_then(|tree| tree.span.clone());
             let problem = Diagnostic::new(format!("{what}: there is no site \"{name}\""), span);
             let hint = did_you_mean(name, self.sites.keys().map(String::as_str))
@@ -142,7 +142,10 @@ impl ModelReader<'_> {
         for tree in self.items("station") {
             let (site, name) = (tree.text("site"), tree.text("name").unwrap_or("station"));
             let id = format!("{}.{name}", site.unwrap_or("?"));
-            if self.station(&tree, &mut stations, nodes, edges, interfaces).is_none() {
+            let whole = self.typed_station(tree);
+            let read =
+                whole.and_then(|tree| self.station(&tree, &mut stations, nodes, edges, interfaces));
+            if read.is_none() {
                 stations.wrong.insert(id);
             }
         }
