@@ -1,7 +1,7 @@
 //! Steady snapshots of EPANET (`data/epanet`): Darcy-Weisbach with EPANET's friction law and gravity,
 //! read into the model format and solved as `anergy solve` does.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use anergy_simulation::model::Model;
 use anergy_simulation::steady;

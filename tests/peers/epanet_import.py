@@ -128,7 +128,8 @@ def compare(name: str, program: str, file: Path, folder: str) -> dict:
     if "failed" in ours:
         lines = ours["message"].splitlines()
         row["message"] = ours["message"]
-        row["status"] = f"{ours['failed']} fails: " + (lines[0] if lines else "")
+        first = lines[0].replace(str(file), file.name) if lines else ""
+        row["status"] = f"{ours['failed']} fails: {first}"
         if not lines:
             row["silent"] = True
         return row

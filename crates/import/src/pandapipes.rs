@@ -4,10 +4,12 @@
 //! the import. Properties of the water are those at the mean start temperature of the junctions.
 //! What is out of service, or without a way to an external grid, is left out.
 
+mod boundaries;
 mod links;
 mod pumps;
 mod tables;
 mod translate;
+mod water;
 
 use crate::model_text::ModelText;
 use crate::{Import, ImportError, text_of};

@@ -119,7 +119,7 @@ impl Network {
     }
 
     fn curve(&mut self, row: &Row<'_>) -> Result<(), ImportError> {
-        if row.words.len() % 2 == 0 {
+        if row.words.len().is_multiple_of(2) {
             return Err(row.error("a point of a curve needs two numbers"));
         }
         let mut points = Vec::new();

@@ -1,9 +1,11 @@
 //! Junctions and branches of a pandapipes net as entries of a model.
 
 use super::Friction;
+use super::boundaries::{circulation, fixed};
 use super::links::{BRANCHES, Branch, branches, reached};
 use super::pumps::coefficients;
-use super::tables::{Table, Tables, inside, number, numbers};
+use super::tables::{Table, Tables};
+use super::water::{Water, water};
 use crate::model_text::ModelText;
 use crate::{ImportError, NoteKind};
 use std::collections::{HashMap, HashSet};
@@ -17,19 +19,6 @@ const AT_JUNCTIONS: [(&str, f64); 3] = [("sink", -1.0), ("source", 1.0), ("mass_
 const LEAST_LOSS: f64 = 0.01;
 /// The largest flow of a consumer, m3/s: none.
 const ANY_FLOW_M3_S: f64 = 1e3;
-
-/// Properties of the water.
-struct Water {
-    density: f64,
-    heat_capacity: f64,
-    viscosity: f64,
-}
-
-/// A given pressure at a junction.
-struct Fixed {
-    pressure_pa: f64,
-    temperature_k: Option<f64>,
-}
 
 pub(super) fn translate(
     net: &Tables,
@@ -119,83 +108,6 @@ fn node(junction: i64) -> String {
     format!("junction{junction}")
 }
 
-/// Pressures of external grids and circulation pumps.
-fn fixed(net: &Tables, text: &mut ModelText) -> Result<HashMap<i64, Fixed>, ImportError> {
-    let mut fixed = HashMap::new();
-    let mut add = |junction, bar: f64, temperature_k| {
-        fixed.insert(junction, Fixed { pressure_pa: 1e5 * bar, temperature_k });
-    };
-    let grids = net.table("ext_grid")?;
-    for row in grids.in_service() {
-        if grids.text(row, "type").is_some_and(|kind| !kind.contains('p')) {
-            let what = format!("ext_grid {} gives a temperature without a pressure", row.index);
-            text.note(NoteKind::Problem, None, what);
-            continue;
-        }
-        let junction = grids.integer(row, "junction")?;
-        add(junction, grids.number(row, "p_bar")?, grids.maybe(row, "t_k"));
-    }
-    for name in ["circ_pump_mass", "circ_pump_pressure"] {
-        let pumps = net.table(name)?;
-        for row in pumps.in_service() {
-            let (flow_bar, t_k) = (pumps.number(row, "p_flow_bar")?, pumps.maybe(row, "t_flow_k"));
-            add(pumps.integer(row, "flow_junction")?, flow_bar, t_k);
-            let what = if name == "circ_pump_pressure" {
-                let lift = pumps.number(row, "plift_bar")?;
-                add(pumps.integer(row, "return_junction")?, flow_bar - lift, t_k);
-                "two boundaries with its pressures"
-            } else {
-                "a boundary with its pressure and a source with its flow"
-            };
-            text.note(NoteKind::Changed, None, format!("{name} {} is {what}", row.index));
-        }
-    }
-    Ok(fixed)
-}
-
-/// What pumps with a given flow take out.
-fn circulation(net: &Tables, m_flow: &mut HashMap<i64, f64>) -> Result<(), ImportError> {
-    let pumps = net.table("circ_pump_mass")?;
-    for row in pumps.in_service() {
-        let flow = pumps.number(row, "mdot_flow_kg_per_s")?;
-        *m_flow.entry(pumps.integer(row, "return_junction")?).or_insert(0.0) -= flow;
-    }
-    Ok(())
-}
-
-/// Properties at a temperature.
-fn water(net: &Tables, t_k: f64) -> Result<Water, ImportError> {
-    let wrong = |what: &str| ImportError::new(None, format!("fluid: {what}"));
-    let fluid = net.get("fluid").ok_or_else(|| wrong("the net has none"))?;
-    if fluid.get("is_gas").and_then(serde_json::Value::as_bool) == Some(true) {
-        return Err(wrong("a gas: anergy knows water only"));
-    }
-    let property = |name: &str| {
-        let properties = fluid.get("all_properties")?;
-        let property = inside(properties.get(name)?).into_owned();
-        if let Some(value) = property.get("value") {
-            return number(value);
-        }
-        let (x, y) = (numbers(property.get("x")?)?, numbers(property.get("y")?)?);
-        if x.len() < 2 || x.len() != y.len() {
-            return None;
-        }
-        // The last points continue the table on both sides, as in pandapipes.
-        let i = x.partition_point(|x| *x <= t_k).clamp(1, x.len() - 1);
-        Some(y[i - 1] + (y[i] - y[i - 1]) / (x[i] - x[i - 1]) * (t_k - x[i - 1]))
-    };
-    let get = |name: &str| {
-        property(name)
-            .filter(|value| *value > 0.0 && value.is_finite())
-            .ok_or_else(|| wrong(&format!("{name} cannot be read")))
-    };
-    Ok(Water {
-        density: get("density")?,
-        heat_capacity: get("heat_capacity")?,
-        viscosity: get("viscosity")?,
-    })
-}
-
 /// Tables that no entry stands for, and rows out of service.
 fn others_noted(net: &Tables, branches: &[Table], text: &mut ModelText) {
     let known = ["junction", "ext_grid", "circ_pump_mass", "circ_pump_pressure"];
@@ -279,6 +191,13 @@ impl Writer<'_> {
         };
         let (from, to) = (end(branch.from), end(branch.to));
         let diameter_m = table.diameter_m(row)?;
+        if table.number(row, "length_km")? == 0.0 {
+            let loss = table.maybe(row, "loss_coefficient").unwrap_or(0.0);
+            self.resistance_of(id, &[from, to], loss, diameter_m);
+            let what = format!("{id} has no length: it is a resistance");
+            self.text.note(NoteKind::Changed, None, what);
+            return Ok(());
+        }
         let u = ["u_w_per_m2k", "alpha_w_per_m2k"].iter().find_map(|key| table.maybe(row, key));
         let outer_m = table.maybe(row, "outer_diameter_mm").map_or(diameter_m, |mm| 1e-3 * mm);
         let u = u.filter(|u| *u > 0.0);
@@ -361,13 +280,14 @@ impl Writer<'_> {
         let (heat, m_flow) = (get("qext_w"), get("controlled_mdot_kg_per_s"));
         let (difference, return_k) = (get("deltat_k"), get("treturn_k"));
         let cp = self.water.heat_capacity;
-        self.text.edge(id, "flow_source", from, to).maybe("m_flow_kg_s", m_flow);
         let heat = heat.or_else(|| Some(m_flow? * cp * difference?));
         let difference = difference.or_else(|| Some(heat? / (cp * m_flow?)));
         let load = heat.filter(|heat| *heat > 0.0);
         match (load, difference.filter(|k| *k > 0.0), return_k) {
             (Some(load), difference, return_k) if difference.is_some() || return_k.is_some() => {
                 let return_k = if difference.is_some() { None } else { return_k };
+                // The port of a unit that takes heat stands against its flow.
+                self.text.edge(id, "flow_source", to, from);
                 self.text
                     .entry("unit")
                     .text("id", &format!("{id}.load"))
@@ -380,6 +300,7 @@ impl Writer<'_> {
                     .number("coldest_return_k", 273.15);
             }
             _ if m_flow.is_some() => {
+                self.text.edge(id, "flow_source", from, to).maybe("m_flow_kg_s", m_flow);
                 if heat != Some(0.0) {
                     let what = format!("{id}: its heat; the flow is as given");
                     self.text.note(NoteKind::NotTranslated, None, what);
