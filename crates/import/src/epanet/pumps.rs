@@ -196,7 +196,7 @@ mod tests {
         assert!((head_m - 101.600_508).abs() < 1e-9);
         assert!((exponent - 1.999_978_36).abs() < 1e-8);
         let r = head_m / free_flow_m3_s.powf(exponent);
-        assert!((r / 2836.050_548 - 1.0).abs() < 1e-6, "{r}");
+        assert!((r / 2_836.050_548 - 1.0).abs() < 1e-6, "{r}");
         // Net3, pump 10.
         let points = [(0.0, 31.6992), (0.126_180_392_8, 28.0416), (0.252_360_785_6, 19.2024)];
         let HeadCurve::Power { exponent, .. } = through(&points).unwrap() else { panic!() };
