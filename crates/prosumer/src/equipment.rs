@@ -1,6 +1,7 @@
 //! REGISTRY of the thermal units: adding one is one file, its `mod` line and its line below.
 
 pub mod heat_load;
+pub mod heat_source;
 pub mod prescribed_source;
 
 use crate::thermal_unit::{ThermalUnit, UnitError};
@@ -11,6 +12,7 @@ anergy_core::registry! {
     pub enum Equipment: dyn ThermalUnit, params EquipmentParams, context Medium, error UnitError {
         PrescribedSource("prescribed_source", prescribed_source::PrescribedSource, prescribed_source::PrescribedSourceParams),
         HeatLoad("heat_load", heat_load::HeatLoad, heat_load::HeatLoadParams),
+        HeatSource("heat_source", heat_source::HeatSource, heat_source::HeatSourceParams),
     }
 }
 

@@ -9,7 +9,7 @@ pub(crate) use network::pipe_temperatures;
 use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
-use crate::plan::{Plan, PlannedUnit};
+use crate::plan::{Plan, PlannedUnit, WorstPoint};
 use crate::state::State;
 use crate::temperatures::SURROUNDINGS;
 use crate::wording::refused;
@@ -86,6 +86,7 @@ impl Builder<'_> {
             .chain(model.units.iter().map(|unit| ("unit", &unit.id, &unit.place)))
             .chain(model.interfaces.iter().map(|i| ("interface", &i.id, &i.place)))
             .chain(model.controllers.iter().map(|c| ("controller", &c.id, &c.place)))
+            .chain(model.worst_points.iter().map(|p| ("worst point", &p.entry.id, &p.place)))
             .chain(model.prescriptions.iter().map(|p| ("prescription", &p.id, &p.place)));
         self.check_doubled(others.collect());
         if model.edges.is_empty() && self.problems.is_empty() {
@@ -146,6 +147,7 @@ impl Builder<'_> {
         let mut writers: HashMap<SignalId, Writer> = HashMap::new();
         let units = self.units(&edge_ids, &network, &commands, &mut signals, &mut writers);
         let stations = self.stations(&edge_ids);
+        let worst_points = self.worst_points(&node_ids);
         let prescriptions =
             self.prescribed_signals(&network.prescriptions, &commands, &mut signals, &mut writers);
         for prescription in &network.prescriptions {
@@ -179,6 +181,7 @@ impl Builder<'_> {
             stations,
             units,
             controllers: Vec::new(),
+            worst_points,
             prescriptions,
             drivers,
             signals,
@@ -237,6 +240,26 @@ impl Builder<'_> {
             }
         }
         stations
+    }
+
+    fn worst_points(&mut self, node_ids: &HashMap<&str, usize>) -> Vec<WorstPoint> {
+        let mut points = Vec::new();
+        for spec in &self.model.worst_points {
+            let mut find = |name: &str| {
+                let found = node_ids.get(name).copied();
+                if found.is_none() {
+                    let what = format!("worst_point \"{}\"", spec.entry.id);
+                    let hint = did_you_mean(name, node_ids.keys().copied());
+                    let message = format!("{what}: between names no node: \"{name}\"");
+                    self.report(message, spec.place.of("between"), hint);
+                }
+                found
+            };
+            let pairs = spec.entry.between.iter();
+            let between = pairs.filter_map(|(a, b)| find(a).zip(find(b))).collect();
+            points.push(WorstPoint { name: spec.entry.id.clone(), between });
+        }
+        points
     }
 
     fn run_times(&mut self) -> (Time, Time, Time) {

@@ -44,6 +44,8 @@ pub enum Source {
     StationRequest(usize),
     /// Whether a station is blocked.
     StationBlocked(usize),
+    /// Smallest pressure difference of a worst point, Pa.
+    WorstPoint(usize),
     /// An output of a unit.
     UnitOutput(usize),
     /// An input signal.
@@ -100,6 +102,9 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
             list.add(group, name, "requested_m_flow_kg_s", "kg s-1", request);
             list.add(group, name, "blocked", "1", Source::StationBlocked(i));
         }
+    }
+    for (i, point) in plan.worst_points.iter().enumerate() {
+        list.add(ChannelGroup::Interfaces, &point.name, "dp_pa", "Pa", Source::WorstPoint(i));
     }
     for unit in &plan.units {
         for (k, (quantity, unit_word)) in unit.equipment.outputs().iter().enumerate() {
@@ -222,6 +227,10 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::StationEnergy(i) => state.station_heat_j[i],
         Source::StationRequest(i) => plan.stations[i].requested_m_flow_kg_s.unwrap_or(0.0),
         Source::StationBlocked(i) => f64::from(u8::from(state.stations[i].blocked)),
+        Source::WorstPoint(i) => {
+            let pairs = plan.worst_points[i].between.iter();
+            pairs.map(|&(a, b)| network.p_pa[a] - network.p_pa[b]).fold(f64::INFINITY, f64::min)
+        }
         Source::UnitOutput(i) => state.unit_outputs[i],
         Source::Signal(id) => state.signals[id.index()],
         Source::TotalElectric => plan.total_electric_w(network),

@@ -112,6 +112,14 @@ impl Model {
             .chain(model.interfaces.iter().map(|interface| interface.id.clone()))
             .chain(std::iter::once("ground".to_owned()))
             .collect();
+        for point in &mut model.worst_points {
+            let pairs = &mut point.entry.between;
+            pairs.retain(|(a, b)| inside.contains(a.as_str()) && inside.contains(b.as_str()));
+        }
+        model.worst_points.retain(|point| !point.entry.between.is_empty());
+        let points: Vec<String> =
+            model.worst_points.iter().map(|point| point.entry.id.clone()).collect();
+        let kept: HashSet<String> = kept.into_iter().chain(points).collect();
         let component = |name: &str| name.rsplit_once('.').is_some_and(|(c, _)| kept.contains(c));
         model.controllers.retain(|c| component(&c.measures) && component(&c.acts_on));
         model.prescriptions.retain(|p| component(&p.entry.quantity) && component(&p.entry.free));

@@ -6,6 +6,7 @@
 use crate::diagnostic::Diagnostics;
 use crate::model_file::{
     InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry, RunEntry,
+    WorstPointEntry,
 };
 use crate::table::Tables;
 use anergy_control::controllers::ControllerParams;
@@ -154,6 +155,15 @@ pub struct ControllerSpec {
     pub place: Place,
 }
 
+/// The smallest of several pressure differences, as a channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorstPointSpec {
+    /// Its fields.
+    pub entry: WorstPointEntry,
+    /// Where it stands.
+    pub place: Place,
+}
+
 /// A quantity that is given while an actuator is free.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrescriptionSpec {
@@ -220,6 +230,8 @@ pub struct Model {
     pub interfaces: Vec<InterfaceSpec>,
     /// Controllers.
     pub controllers: Vec<ControllerSpec>,
+    /// Worst points.
+    pub worst_points: Vec<WorstPointSpec>,
     /// Prescriptions.
     pub prescriptions: Vec<PrescriptionSpec>,
     /// Schedules and series.

@@ -5,12 +5,14 @@
 
 mod duration;
 pub mod expand;
+mod plant;
 pub mod read;
 pub mod schema;
 pub mod series;
 mod tables;
 
 pub use duration::Duration;
+pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use tables::NetworkEntry;
 
 use anergy_core::clock::Time;
@@ -212,6 +214,8 @@ pub enum StationKind {
     Producer,
     /// The flow is what the unit asks for; its water is grid water.
     PrescribedFlow,
+    /// Circulate the water and give it the supply temperature.
+    Plant,
 }
 
 /// `[[interface]]`: what a station is in a model written as plain nodes and edges.

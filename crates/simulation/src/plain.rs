@@ -90,6 +90,7 @@ impl Model {
                 })
                 .collect(),
         );
+        section("worst_point", self.worst_points.iter().map(|point| json!(point.entry)).collect());
         section(
             "prescribed",
             self.prescriptions

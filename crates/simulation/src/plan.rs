@@ -40,6 +40,13 @@ pub(crate) struct PlannedController {
     pub state: Range<usize>,
 }
 
+/// Pairs of nodes of which the smallest pressure difference is of interest.
+#[derive(Debug, Clone)]
+pub(crate) struct WorstPoint {
+    pub name: String,
+    pub between: Vec<(usize, usize)>,
+}
+
 /// A prescription with the signal of its value; in the order of the network's.
 #[derive(Debug, Clone)]
 pub(crate) struct PlannedPrescription {
@@ -68,6 +75,7 @@ pub struct Plan {
     pub(crate) station_of_valve: Vec<Option<usize>>,
     pub(crate) units: Vec<PlannedUnit>,
     pub(crate) controllers: Vec<PlannedController>,
+    pub(crate) worst_points: Vec<WorstPoint>,
     pub(crate) prescriptions: Vec<PlannedPrescription>,
     pub(crate) drivers: Vec<Driver>,
     pub(crate) signals: SignalTable,

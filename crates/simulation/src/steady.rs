@@ -20,7 +20,7 @@ const SETTLED_K: f64 = 1e-9;
 const SETTLED_KG_S: f64 = 1e-11;
 const MAX_ROUNDS: u32 = 20_000;
 const MAX_CONTROL_ROUNDS: u32 = 60;
-/// Actuator change for the difference quotient.
+/// Actuator change for the difference quotient, relative to its range where that is finite.
 const DIFFERENCE: f64 = 1e-5;
 /// A set point is reached within this share of its scale.
 const REACHED: f64 = 1e-9;
@@ -188,7 +188,9 @@ fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
         }
         let mut jacobian = DMatrix::zeros(free.len(), free.len());
         for (column, &i) in free.iter().enumerate() {
-            let step = if outputs[i] + DIFFERENCE > limits[i].1 { -DIFFERENCE } else { DIFFERENCE };
+            let range = limits[i].1 - limits[i].0;
+            let step = if range.is_finite() { DIFFERENCE * range } else { DIFFERENCE };
+            let step = if outputs[i] + step > limits[i].1 { -step } else { step };
             let mut moved = outputs.clone();
             moved[i] += step;
             let moved_error = set(simulation, &moved)?;

@@ -10,6 +10,7 @@ use anergy_core::ids::{EdgeId, NodeId};
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::graph::{Edge, GraphProblem, Network, Node, NodeKind};
+use anergy_prosumer::equipment::EquipmentParams;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -188,12 +189,28 @@ impl Builder<'_> {
                 self.report(message, spec.place.span.clone(), Some(hint.into()));
             }
             let params = &self.model.edges[edge].params;
-            let fits =
-                matches!(params, ElementParams::HeatExchanger(_) | ElementParams::FlowSource(_));
+            // A heat source takes whatever flow there is, the others want one of their own.
+            let (fits, hint) = match &spec.params {
+                EquipmentParams::HeatSource(_) => (
+                    matches!(params, ElementParams::Resistance(_)),
+                    "a heat_source stands on a resistance, through which its water passes",
+                ),
+                _ => (
+                    matches!(
+                        params,
+                        ElementParams::HeatExchanger(_) | ElementParams::FlowSource(_)
+                    ),
+                    "a unit stands behind a heat_exchanger or on a flow_source",
+                ),
+            };
             if !fits {
-                let message =
-                    format!("unit \"{}\": a {} cannot carry a unit", spec.id, params.kind());
-                let hint = "a unit stands behind a heat_exchanger or on a flow_source";
+                let (unit, edge) = (spec.params.kind(), params.kind());
+                let message = match &spec.params {
+                    EquipmentParams::HeatSource(_) => {
+                        format!("unit \"{}\": a {edge} cannot carry a {unit}", spec.id)
+                    }
+                    _ => format!("unit \"{}\": a {edge} cannot carry a unit", spec.id),
+                };
                 self.report(message, spec.place.of("port"), Some(hint.into()));
             }
             ports.push(EdgeId::from_index(edge));

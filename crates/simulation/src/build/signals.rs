@@ -121,7 +121,9 @@ impl Builder<'_> {
             let first = signals.specs().len();
             for input in equipment.inputs() {
                 let name = format!("{}.{}", spec.id, input.name);
-                let signal = if input.unit == "k" && !input.name.contains("difference") {
+                let signal = if input.name == "outdoor_k" {
+                    temperature_signal(&name, input.initial, &SURROUNDINGS)
+                } else if input.unit == "k" && !input.name.contains("difference") {
                     temperature_signal(&name, input.initial, &DRIVEN_WATER)
                 } else {
                     let (unit, max) = (input.unit, f64::INFINITY);

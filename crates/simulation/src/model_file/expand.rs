@@ -88,6 +88,8 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("feed_in_pump", "{ speed = 1.0 }"),
     ("feed_in_check_valve", "{ kvs_m3_h = 11 }"),
     ("extraction_valve", "{ opening = 0.5 }"),
+    ("circulation_pump", "{ head_max_bar = 5, free_flow_m3_h = 60 }"),
+    ("generator", "{ dp_nominal_bar = 0.2, m_flow_nominal_kg_s = 10 }"),
 ];
 
 /// What a part of a station is in the registry of elements.
@@ -98,6 +100,8 @@ pub(super) fn part_kind(part: &str) -> Option<&'static str> {
         "feed_in_pump" => Some("pump"),
         "feed_in_check_valve" => Some("check_valve"),
         "extraction_valve" => Some("valve"),
+        "circulation_pump" => Some("pump"),
+        "generator" => Some("resistance"),
         _ => None,
     }
 }
@@ -111,6 +115,7 @@ pub(super) fn parts_of(kind: StationKind) -> &'static [&'static str] {
         StationKind::Consumer => &["stub", "heat_exchanger", "extraction_valve"],
         StationKind::Producer => &["stub", "heat_exchanger", "feed_in_pump", "feed_in_check_valve"],
         StationKind::PrescribedFlow => &[],
+        StationKind::Plant => &["circulation_pump", "generator"],
     }
 }
 
@@ -124,12 +129,12 @@ pub(super) fn station_in_words(tree: &Tree) -> String {
 }
 
 /// A part of a station: its name, kind, ends and the defaults of the published station.
-struct Part {
-    name: &'static str,
-    kind: &'static str,
-    fields: &'static str,
-    ends: (String, String),
-    defaults: Value,
+pub(super) struct Part {
+    pub name: &'static str,
+    pub kind: &'static str,
+    pub fields: &'static str,
+    pub ends: (String, String),
+    pub defaults: Value,
 }
 
 /// The nodes, edges and interface of a station; `tree` is its entry, with places.
@@ -268,7 +273,7 @@ fn has_own_curve(tree: &Tree) -> bool {
 
 impl Part {
     /// The part as an edge entry: what the station's entry says, then the defaults.
-    fn tree(&self, station: &Tree, prefix: &str) -> Tree {
+    pub(super) fn tree(&self, station: &Tree, prefix: &str) -> Tree {
         let mut tree = Tree::table(
             station.span.clone(),
             vec![

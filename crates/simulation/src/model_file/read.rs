@@ -2,6 +2,7 @@
 
 mod components;
 mod composites;
+mod plants;
 mod station_types;
 
 use super::expand::{self, Plain};
@@ -37,6 +38,7 @@ pub(super) const SECTIONS: &[&str] = &[
     "interface",
     "unit",
     "controller",
+    "worst_point",
     "prescribed",
     "schedule",
     "series",
@@ -53,6 +55,7 @@ pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> 
         tree,
         dir,
         rows: Rows::new(),
+        holding: Vec::new(),
         tables: Tables::default(),
         sites: HashMap::new(),
         wrong_sites: HashSet::new(),
@@ -74,6 +77,8 @@ struct ModelReader<'a> {
     rows: Rows,
     /// Their places.
     tables: Tables,
+    /// Plants that hold a pressure difference, Pa, at the worst consumer.
+    holding: Vec<(PlantEntry, f64, Tree, Place)>,
     sites: HashMap<String, SiteEntry>,
     /// Sites that are there, but wrong and reported.
     wrong_sites: HashSet<String>,
@@ -86,6 +91,8 @@ struct ModelReader<'a> {
 struct Stations {
     /// Edge of the interface, by `site.name`.
     edges: HashMap<String, String>,
+    /// Hot and cold node of the sites of consumers, by `site.name`.
+    consumers: Vec<(String, (String, String))>,
     /// Those that are there, but wrong and reported.
     wrong: HashSet<String>,
 }
@@ -119,6 +126,7 @@ impl ModelReader<'_> {
         self.read_sites(&mut nodes);
         self.trenches(&mut edges);
         let mut stations = self.stations(&mut nodes, &mut edges, &mut interfaces);
+        self.hold_worst_consumers(&stations);
         let plain =
             |tree: &Tree| Plain { tree: tree.clone(), owner: String::new(), entry: String::new() };
         nodes.extend(self.items("node").iter().map(plain));
@@ -143,6 +151,7 @@ impl ModelReader<'_> {
             units: self.units(&stations),
             interfaces,
             controllers: self.controllers(),
+            worst_points: self.worst_points(),
             prescriptions: self.prescriptions(),
             drivers: self.drivers(start),
             references: self.references(),
@@ -326,7 +335,10 @@ impl ModelReader<'_> {
 
     fn references(&mut self) -> Vec<ReferenceSpec> {
         let items = match self.tree.get("pressure_reference") {
-            Some(tree) if matches!(tree.kind, TreeKind::Table(_)) => vec![tree.clone()],
+            Some(tree) if matches!(tree.kind, TreeKind::Table(_)) => {
+                let of_plants = self.rows.remove("pressure_reference").unwrap_or_default();
+                std::iter::once(tree.clone()).chain(of_plants).collect()
+            }
             _ => self.items("pressure_reference"),
         };
         items

@@ -8,6 +8,7 @@ use anergy_network::elements::pipe::PipeParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use schemars::{Schema, schema_for};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 
 /// The JSON Schema (2020-12) of a model file, with every unit a field can be written in.
 pub fn schema() -> Value {
@@ -35,8 +36,8 @@ pub fn schema() -> Value {
     }
     let station = station_schema();
     let mut station_type = station.clone();
-    if let Some(object) = station_type.as_object_mut() {
-        object.insert("required".into(), json!(["kind"]));
+    for schema in station_type["oneOf"].as_array_mut().into_iter().flatten() {
+        schema["required"] = json!(["kind"]);
     }
     let reference = entry(&schema_for!(PressureReferenceEntry), &[]);
     let properties = json!({
@@ -76,6 +77,7 @@ pub fn schema() -> Value {
             ],
             &["measures", "acts_on"],
         )),
+        "worst_point": list(entry(&schema_for!(WorstPointEntry), &[])),
         "prescribed": list(entry(&schema_for!(PrescribedEntry), &[])),
         "schedule": list(entry(&schema_for!(ScheduleEntry), &[])),
         "series": list(entry(&schema_for!(SeriesEntry), &[])),
@@ -91,33 +93,46 @@ pub fn schema() -> Value {
     })
 }
 
+/// The stations with parts, and the plant.
 fn station_schema() -> Value {
-    let part = |kind: &str| {
-        let mut part = ElementParams::schema(kind).map_or(json!({}), |schema| entry(&schema, &[]));
-        if let Some(object) = part.as_object_mut() {
-            object.remove("required");
-        }
-        part
-    };
-    let mut stub = part("pipe");
-    stub["properties"]["pipe"] = json!({ "type": "string", "description": "Name of a pipe_type" });
     let own = [
         ("type", json!({ "type": "string", "description": "Name of a station_type" })),
         ("unit", json!({ "type": "object", "description": "The unit behind it, like a [[unit]]" })),
     ];
-    let mut station = entry(&schema_for!(StationEntry), &own);
-    // A type may say what it is.
-    station["required"] = json!(["site"]);
-    for (field, schema) in [
-        ("stub", stub),
-        ("heat_exchanger", part("heat_exchanger")),
-        ("feed_in_pump", part("pump")),
-        ("feed_in_check_valve", part("check_valve")),
-        ("extraction_valve", part("valve")),
-    ] {
-        station["properties"][field] = schema;
+    let with_parts = |schema: &Schema, own: &[(&str, Value)], kinds: &[StationKind]| {
+        let mut station = entry(schema, own);
+        // A type may say what it is.
+        station["required"] = json!(["site"]);
+        station["properties"]["kind"] = json!({ "enum": kinds, "description": "What it can do" });
+        let parts: BTreeSet<&str> =
+            kinds.iter().flat_map(|kind| expand::parts_of(*kind)).copied().collect();
+        for part in parts {
+            station["properties"][part] = part_schema(part);
+        }
+        station
+    };
+    let stations = [
+        StationKind::Bidirectional,
+        StationKind::Consumer,
+        StationKind::Producer,
+        StationKind::PrescribedFlow,
+    ];
+    let station = with_parts(&schema_for!(StationEntry), &own, &stations);
+    let plant = with_parts(&schema_for!(PlantEntry), &own[..1], &[StationKind::Plant]);
+    json!({ "oneOf": [station, plant] })
+}
+
+fn part_schema(part: &str) -> Value {
+    let schema = expand::part_kind(part).and_then(ElementParams::schema);
+    let mut schema = schema.map_or(json!({}), |schema| entry(&schema, &[]));
+    if let Some(object) = schema.as_object_mut() {
+        object.remove("required");
     }
-    station
+    if part == "stub" {
+        schema["properties"]["pipe"] =
+            json!({ "type": "string", "description": "Name of a pipe_type" });
+    }
+    schema
 }
 
 /// One schema per kind, chosen by the word of `kind`.

@@ -6,8 +6,26 @@ use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Tree, TreeKind};
 use crate::model::InterfaceSpec;
 use crate::model_file::expand::{self, Plain};
-use crate::model_file::{SiteEntry, StationEntry};
+use crate::model_file::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
 use std::collections::HashSet;
+
+impl Stations {
+    /// Notes a station; `None` when there is one of its name, which is reported.
+    pub(super) fn add(
+        &mut self,
+        reader: &mut ModelReader<'_>,
+        interface: &InterfaceEntry,
+        what: &str,
+        tree: &Tree,
+    ) -> Option<()> {
+        if self.edges.insert(interface.id.clone(), interface.edge.clone()).is_none() {
+            return Some(());
+        }
+        let problem = Diagnostic::new(format!("{what} exists twice"), tree.span.clone());
+        reader.reader.report(problem.with_hint("give one of them a `name`"));
+        None
+    }
+}
 
 impl ModelReader<'_> {
     pub(super) fn read_sites(&mut self, nodes: &mut Vec<Plain>) {
@@ -162,21 +180,20 @@ impl ModelReader<'_> {
         interfaces: &mut Vec<InterfaceSpec>,
     ) -> Option<()> {
         let what = expand::station_in_words(tree);
-        let (entry, table) = self.reader.read::<StationEntry>(&what, tree)?;
-        let site = self.site(&what, tree, "site")?;
-        if site.lines.len() < 2 {
-            let message = format!("{what}: a station needs a site with two lines");
-            let hint = format!("site \"{}\" has only {}", site.id, site.lines.join(", "));
-            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(hint));
-            return None;
+        if tree.text("kind") == Some("plant") {
+            return self.plant(tree, &what, stations, (nodes, edges), interfaces);
         }
-        self.check_parts(&what, &entry, tree)?;
+        let (entry, table) = self.reader.read::<StationEntry>(&what, tree)?;
+        let site = self.site_with_two_lines(&what, tree)?;
+        self.check_parts(&what, entry.kind, tree)?;
         let place = place(&what, tree, &table);
         let (more_nodes, more_edges, interface) = expand::station(&entry, &site, tree);
-        if stations.edges.insert(interface.id.clone(), interface.edge.clone()).is_some() {
-            let problem = Diagnostic::new(format!("{what} exists twice"), tree.span.clone());
-            self.reader.report(problem.with_hint("give one of them a `name`"));
+        if stations.add(self, &interface, &what, tree).is_none() {
             return Some(());
+        }
+        if matches!(entry.kind, StationKind::Consumer | StationKind::PrescribedFlow) {
+            let line = |i: usize| format!("{}.{}", site.id, site.lines[i]);
+            stations.consumers.push((interface.id.clone(), (line(0), line(1))));
         }
         nodes.extend(more_nodes);
         edges.extend(more_edges);
@@ -184,10 +201,22 @@ impl ModelReader<'_> {
         Some(())
     }
 
+    /// The site of a station.
+    pub(super) fn site_with_two_lines(&mut self, what: &str, tree: &Tree) -> Option<SiteEntry> {
+        let site = self.site(what, tree, "site")?;
+        if site.lines.len() < 2 {
+            let message = format!("{what}: a station needs a site with two lines");
+            let hint = format!("site \"{}\" has only {}", site.id, site.lines.join(", "));
+            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(hint));
+            return None;
+        }
+        Some(site)
+    }
+
     /// Every part is a table, and one that the kind of station has.
-    fn check_parts(&mut self, what: &str, entry: &StationEntry, tree: &Tree) -> Option<()> {
+    pub(super) fn check_parts(&mut self, what: &str, kind: StationKind, tree: &Tree) -> Option<()> {
         let before = self.reader.problems.len();
-        let (all, own) = (expand::PARTS, expand::parts_of(entry.kind));
+        let (all, own) = (expand::PARTS, expand::parts_of(kind));
         for (part, example) in all {
             let Some((key, value)) = tree.entries().iter().find(|(key, _)| key.name == *part)
             else {

@@ -1,0 +1,197 @@
+//! Heat for the water that passes: a fixed supply temperature, or one that follows the outdoor
+//! temperature.
+//!
+//! **Equation** `T_out = T_supply`, or `T_out = f(T_outdoor)` with straight lines between the points of
+//! the curve and its end values beyond them. **Assumptions** any heat is available at once, also cold
+//! for water that is too warm; the flow is that of the edge. **Validity** steps longer than the time
+//! constant of the control of a real boiler (a few minutes).
+//!
+//! **Sources** sliding supply temperature of district heating, `frederiksen2013`.
+
+use crate::thermal_unit::{ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
+use anergy_core::medium::Medium;
+use anergy_core::port::{Outlet, PortFlow, PortRequest};
+use anergy_core::signal::Signals;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A heat source as written in a model file: with `supply_k` or `outdoor_curve_k`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeatSourceParams {
+    /// Temperature of the water that leaves, K.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supply_k: Option<f64>,
+    /// Points of outdoor and supply temperature, K, by rising outdoor temperature.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outdoor_curve_k: Vec<(f64, f64)>,
+    /// Outdoor temperature while nothing drives it, K.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outdoor_k: Option<f64>,
+}
+
+impl Default for HeatSourceParams {
+    fn default() -> Self {
+        Self { supply_k: Some(353.15), outdoor_curve_k: Vec::new(), outdoor_k: None }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Supply {
+    Fixed(f64),
+    Curve { points: Vec<(f64, f64)>, outdoor_k: f64 },
+}
+
+/// A heat source ready to run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatSource {
+    supply: Supply,
+    medium: Medium,
+}
+
+/// Outdoor temperature while nothing is said of it, K.
+const OUTDOOR_K: f64 = 273.15;
+
+impl HeatSourceParams {
+    /// The runtime unit.
+    ///
+    /// # Errors
+    /// Names the field that is out of range or missing.
+    pub fn build(&self, medium: &Medium) -> Result<HeatSource, UnitError> {
+        let fields = |problem: &str| Err(UnitError::Fields { problem: problem.to_owned() });
+        let supply = match (self.supply_k, self.outdoor_curve_k.as_slice()) {
+            (Some(t_k), []) if self.outdoor_k.is_none() => {
+                Supply::Fixed(super::liquid("supply_k", t_k)?)
+            }
+            (Some(_), []) => return fields("outdoor_k (outdoor_degc) needs an outdoor_curve_degc"),
+            (None, points @ [_, ..]) => {
+                for pair in points.windows(2) {
+                    if pair[1].0 <= pair[0].0 || pair[1].0.is_nan() {
+                        return fields("outdoor_curve: the outdoor temperatures must rise");
+                    }
+                }
+                for point in points {
+                    super::liquid("outdoor_curve_k", point.1)?;
+                }
+                let outdoor_k = self.outdoor_k.unwrap_or(OUTDOOR_K);
+                Supply::Curve { points: points.to_vec(), outdoor_k }
+            }
+            _ => {
+                return fields(
+                    "give either supply_k (supply_degc) or outdoor_curve_k (outdoor_curve_degc)",
+                );
+            }
+        };
+        Ok(HeatSource { supply, medium: *medium })
+    }
+}
+
+/// Straight lines between the points, their end values beyond.
+fn interpolated(points: &[(f64, f64)], x: f64) -> f64 {
+    let next = points.partition_point(|point| point.0 <= x);
+    match (next.checked_sub(1).map(|i| points[i]), points.get(next)) {
+        (Some((x0, y0)), Some((x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (Some((_, y)), None) | (None, Some(&(_, y))) => y,
+        (None, None) => f64::NAN,
+    }
+}
+
+impl HeatSource {
+    fn supply_k(&self, signals: &Signals<'_>) -> f64 {
+        match &self.supply {
+            Supply::Fixed(_) => signals.get(0),
+            Supply::Curve { points, .. } => interpolated(points, signals.get(0)),
+        }
+    }
+}
+
+impl ThermalUnit for HeatSource {
+    fn inputs(&self) -> Vec<UnitInput> {
+        let (name, initial) = match &self.supply {
+            Supply::Fixed(t_k) => ("supply_k", *t_k),
+            Supply::Curve { outdoor_k, .. } => ("outdoor_k", *outdoor_k),
+        };
+        vec![UnitInput { name, unit: "k", initial, min: 0.0 }]
+    }
+
+    fn outputs(&self) -> &'static [UnitOutput] {
+        &[
+            ("q_flow_w", "W"),
+            ("m_flow_kg_s", "kg s-1"),
+            ("t_in_k", "K"),
+            ("t_out_k", "K"),
+            ("supply_set_k", "K"),
+        ]
+    }
+
+    fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn request(&self, _state: &[f64], signals: &Signals<'_>, wanted: &mut [PortRequest]) {
+        let outlet = Outlet::Temperature(self.supply_k(signals));
+        wanted[0] = PortRequest { m_flow_kg_s: 0.0, outlet };
+    }
+
+    fn advance(
+        &self,
+        _dt_s: f64,
+        ports: &[PortFlow],
+        signals: &Signals<'_>,
+        _state: &mut [f64],
+        out: &mut [f64],
+    ) {
+        let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
+        out[0] = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
+        out[1] = m_flow_kg_s;
+        out[2] = t_in_k;
+        out[3] = t_out_k;
+        out[4] = self.supply_k(signals);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn supply_degc(params: &HeatSourceParams, signal_degc: f64) -> f64 {
+        let unit = params.build(&Medium::default()).unwrap();
+        let mut wanted = [PortRequest::default()];
+        unit.request(&[], &Signals(&[signal_degc + 273.15]), &mut wanted);
+        let Outlet::Temperature(t_k) = wanted[0].outlet else { panic!() };
+        t_k - 273.15
+    }
+
+    #[test]
+    fn supply_follows_the_outdoor_temperature() {
+        let curve = |points: &[(f64, f64)]| HeatSourceParams {
+            supply_k: None,
+            outdoor_curve_k: points.iter().map(|(x, y)| (x + 273.15, y + 273.15)).collect(),
+            outdoor_k: None,
+        };
+        // -12 degC: 90, 15 degC: 70; at 3 degC: 90 - 20 * 15/27 = 78.888...
+        let params = curve(&[(-12.0, 90.0), (15.0, 70.0)]);
+        for (outdoor, supply) in
+            [(-20.0, 90.0), (-12.0, 90.0), (3.0, 90.0 - 300.0 / 27.0), (15.0, 70.0), (30.0, 70.0)]
+        {
+            assert!((supply_degc(&params, outdoor) - supply).abs() < 1e-9, "{outdoor}");
+        }
+        assert_eq!(params.build(&Medium::default()).unwrap().inputs()[0].name, "outdoor_k");
+        for points in [&[(15.0, 70.0), (-12.0, 90.0)][..], &[(0.0, 120.0)][..], &[][..]] {
+            assert!(curve(points).build(&Medium::default()).is_err(), "{points:?}");
+        }
+    }
+
+    #[test]
+    fn a_fixed_supply_is_its_signal() {
+        assert!((supply_degc(&HeatSourceParams::default(), 65.0) - 65.0).abs() < 1e-9);
+        let both = HeatSourceParams { outdoor_k: Some(270.0), ..HeatSourceParams::default() };
+        assert!(both.build(&Medium::default()).is_err());
+        // 1 kg/s from 50 to 80 degC: 4180 * 30 = 125.4 kW
+        let unit = HeatSourceParams::default().build(&Medium::default()).unwrap();
+        let (mut out, got) =
+            ([0.0; 5], PortFlow { m_flow_kg_s: 1.0, t_in_k: 323.15, t_out_k: 353.15 });
+        unit.advance(1.0, &[got], &Signals(&[353.15]), &mut [], &mut out);
+        assert!((out[0] - 125_400.0).abs() < 1e-6);
+    }
+}
