@@ -37,6 +37,7 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python -m pytest -q crates/py
 	$(BIN)/python -m mypy.stubtest anergy --mypy-config-file crates/py/pyproject.toml
 	$(BIN)/python examples/three-houses/run.py
+	$(BIN)/python examples/town/run.py
 
 validate: ## Slow cases, peers, large random sets
 	PROPTEST_CASES=2000 cargo test --release -p anergy-tests --test every_element --test random_networks

@@ -198,15 +198,31 @@ fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
                 jacobian[(row, column)] = (moved_error[j] - error[j]) / step;
             }
         }
+        let without_effect = |i: usize| RunError::NotSettled {
+            iterations: 1,
+            culprit: format!(
+                "the actuator of controller \"{}\" has no effect on what it measures",
+                plan.controllers[i].name
+            ),
+        };
+        // An actuator beyond what its element can do, like a head that the pump does not reach at this
+        // flow, has no effect here, but may have one elsewhere.
+        let idle = (0..free.len()).find(|&k| jacobian.column(k).iter().all(|slope| *slope == 0.0));
+        if let Some(k) = idle {
+            let i = free[k];
+            let (min, max) = limits[i];
+            let push = error[i] * plan.controllers[i].controller.direction();
+            let mut other = outputs.clone();
+            other[i] = if outputs[i] > min { min } else { max };
+            if !other[i].is_finite() || set(simulation, &other)? == error {
+                return Err(without_effect(i));
+            }
+            outputs[i] = (outputs[i] + 0.3 * (max - min) * push.signum()).clamp(min, max);
+            continue;
+        }
         let rhs = DVector::from_iterator(free.len(), free.iter().map(|&i| -error[i]));
         let Some(change) = jacobian.lu().solve(&rhs) else {
-            let name = &plan.controllers[free[0]].name;
-            return Err(RunError::NotSettled {
-                iterations: 1,
-                culprit: format!(
-                    "the actuator of controller \"{name}\" has no effect on what it measures"
-                ),
-            });
+            return Err(without_effect(free[0]));
         };
         for (k, &i) in free.iter().enumerate() {
             let (min, max) = limits[i];
