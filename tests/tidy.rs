@@ -100,6 +100,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "open",
     "opening",
     "initial_opening",
+    "switch_at",
     "rangeability",
     "speed",
     "initial_speed",

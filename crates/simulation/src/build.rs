@@ -1,5 +1,6 @@
 //! From names to ids: a model becomes a plan, or all its problems are reported.
 
+mod commands;
 mod network;
 mod prescribed;
 mod signals;

@@ -3,6 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{DriverSpec, Model, Place};
 use crate::model_file::{Interpolation, NodeEntryKind};
+use anergy_network::elements::ElementParams;
 use std::collections::{HashMap, HashSet};
 
 /// What is given at a cut node.
@@ -117,9 +118,12 @@ impl Model {
             pairs.retain(|(a, b)| inside.contains(a.as_str()) && inside.contains(b.as_str()));
         }
         model.worst_points.retain(|point| !point.entry.between.is_empty());
-        let points: Vec<String> =
-            model.worst_points.iter().map(|point| point.entry.id.clone()).collect();
-        let kept: HashSet<String> = kept.into_iter().chain(points).collect();
+        let points = model.worst_points.iter().map(|point| point.entry.id.clone());
+        let shared = model.edges.iter().filter_map(|edge| match &edge.params {
+            ElementParams::Valve(valve) => valve.command_of.clone(),
+            _ => None,
+        });
+        let kept: HashSet<String> = kept.into_iter().chain(points).chain(shared).collect();
         let component = |name: &str| name.rsplit_once('.').is_some_and(|(c, _)| kept.contains(c));
         model.controllers.retain(|c| component(&c.measures) && component(&c.acts_on));
         model.prescriptions.retain(|p| component(&p.entry.quantity) && component(&p.entry.free));

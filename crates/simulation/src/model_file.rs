@@ -10,10 +10,12 @@ pub mod read;
 pub mod schema;
 pub mod series;
 mod tables;
+mod three_way_valve;
 
 pub use duration::Duration;
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use tables::NetworkEntry;
+pub use three_way_valve::{ThreeWayMode, ThreeWayValveEntry};
 
 use anergy_core::clock::Time;
 use schemars::JsonSchema;

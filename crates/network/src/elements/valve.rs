@@ -6,7 +6,8 @@
 //! cubic with value and slope of both ends. Quick opening `phi = l + (1 - l) y^(1/alpha)`, whose slope
 //! at the seat is made finite: `y (y^2 + delta^2)^((1/alpha - 1)/2)` for the power, scaled to 1 at full
 //! stroke. Table `phi = l + (1 - l) f(y)` with a monotone curve f through the points. With
-//! `command = "kappa"` the command is the wanted phi.
+//! `command = "kappa"` the command is the wanted phi. An inverse valve takes `1 - command`, a switching
+//! one `0` or `1`.
 //!
 //! **Assumptions** fully turbulent. **Numerics** the square law is regularised below `delta_m` times
 //! the nominal flow; a closed tight valve is a prescribed flow of zero.
@@ -81,6 +82,17 @@ pub struct ValveParams {
     /// What the command means.
     #[serde(default)]
     pub command: ValveCommand,
+    /// Name under which valves share one command, a signal `NAME.opening` (or `.kappa`). Absent: the
+    /// command is its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command_of: Option<String>,
+    /// Whether it takes one minus the command, like the second way of a three-way valve.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inverse: bool,
+    /// Command from which on it opens fully, and below which it closes: a switching valve. Absent: it
+    /// takes any opening.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub switch_at: Option<f64>,
     /// Opening commanded while nothing drives it. Not with `command = "kappa"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub opening: Option<f64>,
@@ -132,6 +144,9 @@ impl Default for ValveParams {
             table_phi: Vec::new(),
             leakage: default_leakage(),
             command: ValveCommand::default(),
+            command_of: None,
+            inverse: false,
+            switch_at: None,
             opening: None,
             kappa: None,
             initial_opening: None,
@@ -148,6 +163,8 @@ pub struct Valve {
     k_open: f64,
     curve: Curve,
     command: ValveCommand,
+    inverse: bool,
+    switch_at: Option<f64>,
     actuator: Actuator,
     m_flow_nominal_kg_s: f64,
     m_turbulent_kg_s: f64,
@@ -173,31 +190,37 @@ impl ValveParams {
             });
         }
         let initial_command = ratio(command_name, given.unwrap_or(1.0))?;
-        let target = match self.command {
-            ValveCommand::Opening => initial_command,
-            ValveCommand::Kappa => curve.opening(initial_command),
-        };
+        if let Some(switch_at) = self.switch_at {
+            // At 0 it could never close.
+            positive("switch_at", ratio("switch_at", switch_at)?)?;
+        }
         let m_flow_nominal_kg_s = match self.m_flow_nominal_kg_s {
             Some(m) => positive("m_flow_nominal_kg_s", m)?,
             None => k_open * 1e4_f64.sqrt(),
         };
-        Ok(Valve {
+        let mut valve = Valve {
             k_open,
             curve,
             command: self.command,
+            inverse: self.inverse,
+            switch_at: self.switch_at,
             actuator: Actuator {
                 position: "opening",
                 command: command_name,
                 unit: "",
                 initial_command,
-                initial_position: ratio("initial_opening", self.initial_opening.unwrap_or(target))?,
+                initial_position: 0.0,
                 rise_time_s: not_negative("stroke_time_s", self.stroke_time_s)?,
                 min: 0.0,
                 max: 1.0,
             },
             m_flow_nominal_kg_s,
             m_turbulent_kg_s: positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s,
-        })
+        };
+        let target = valve.target_position(initial_command);
+        valve.actuator.initial_position =
+            ratio("initial_opening", self.initial_opening.unwrap_or(target))?;
+        Ok(valve)
     }
 
     /// The characteristic with its parameters checked.
@@ -257,6 +280,11 @@ impl TwoPort for Valve {
 
     fn target_position(&self, command: f64) -> f64 {
         let command = command.clamp(0.0, 1.0);
+        let command = match self.switch_at {
+            Some(switch_at) => f64::from(u8::from(command >= switch_at)),
+            None => command,
+        };
+        let command = if self.inverse { 1.0 - command } else { command };
         match self.command {
             ValveCommand::Opening => command,
             ValveCommand::Kappa => self.curve.opening(command),
@@ -287,6 +315,28 @@ mod tests {
         assert!((loss(&valve, 2.5 / 3.6, 1.0) - 1e5).abs() < 1e-6);
         let leak = Valve { m_turbulent_kg_s: 1e-9, ..valve };
         assert!((loss(&leak, 2e-3 * 2.5 / 3.6, 0.0) - 1e5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn inverse_and_switching_valves() {
+        let target = |params: ValveParams, command: f64| {
+            params.build(&Medium::default()).unwrap().target_position(command)
+        };
+        let inverse = ValveParams { inverse: true, ..ValveParams::default() };
+        assert_eq!(target(inverse.clone(), 0.3), 0.7);
+        let switching = ValveParams { switch_at: Some(0.6), ..ValveParams::default() };
+        assert_eq!(
+            [0.0, 0.59, 0.6, 1.0].map(|x| target(switching.clone(), x)),
+            [0.0, 0.0, 1.0, 1.0]
+        );
+        let both = ValveParams { switch_at: Some(0.6), ..inverse };
+        assert_eq!([0.59, 0.6].map(|x| target(both.clone(), x)), [1.0, 0.0]);
+        // An inverse valve starts where its command leads: opening 0.2 is 0.8 of the stroke.
+        let start = ValveParams { opening: Some(0.2), ..both };
+        let start = ValveParams { switch_at: None, ..start }.build(&Medium::default()).unwrap();
+        assert_eq!(start.actuator.initial_position, 0.8);
+        let never = ValveParams { switch_at: Some(0.0), ..ValveParams::default() };
+        assert_eq!(never.build(&Medium::default()).unwrap_err().field(), Some("switch_at"));
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::model::PrescriptionSpec;
 use crate::plan::PlannedPrescription;
 use anergy_core::ids::{EdgeId, NodeId, SignalId};
 use anergy_core::signal::SignalTable;
+use anergy_network::elements::ElementParams;
 use anergy_network::graph::{Edge, Prescription, Quantity};
 use anergy_network::well_posed::{Equation, Unknown};
 use std::collections::HashMap;
@@ -73,7 +74,14 @@ impl Builder<'_> {
         edge_ids: &HashMap<&str, usize>,
         edges: &[Edge],
     ) -> Option<EdgeId> {
-        let command = |i: usize| edges[i].element.actuator().map(|actuator| actuator.command);
+        // A valve that shares its command cannot be left free alone.
+        let alone = |i: usize| match &self.model.edges[i].params {
+            ElementParams::Valve(valve) => valve.command_of.is_none(),
+            _ => true,
+        };
+        let command = |i: usize| {
+            edges[i].element.actuator().filter(|_| alone(i)).map(|actuator| actuator.command)
+        };
         let (component, word) = spec.entry.free.rsplit_once('.').unwrap_or(("", ""));
         let found = edge_ids.get(component).copied().filter(|&i| command(i) == Some(word));
         if found.is_none() {

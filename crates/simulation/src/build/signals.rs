@@ -72,28 +72,6 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// A command signal for every element with an actuator.
-    pub(super) fn edge_signals(
-        &mut self,
-        network: &Network,
-        signals: &mut SignalTable,
-    ) -> Vec<Option<SignalId>> {
-        let mut commands = Vec::with_capacity(network.edges.len());
-        for (spec, edge) in self.model.edges.iter().zip(&network.edges) {
-            commands.push(edge.element.actuator().map(|actuator| {
-                let signal = SignalSpec {
-                    name: format!("{}.{}", spec.id, actuator.command),
-                    unit: actuator.unit,
-                    initial: actuator.initial_command,
-                    min: actuator.min,
-                    max: actuator.max,
-                };
-                self.add_signal(signals, signal, &spec.place)
-            }));
-        }
-        commands
-    }
-
     pub(super) fn units(
         &mut self,
         edge_ids: &HashMap<&str, usize>,

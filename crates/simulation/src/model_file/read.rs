@@ -4,6 +4,7 @@ mod components;
 mod composites;
 mod plants;
 mod station_types;
+mod three_way_valves;
 
 use super::expand::{self, Plain};
 use super::tables::Rows;
@@ -35,6 +36,7 @@ pub(super) const SECTIONS: &[&str] = &[
     "station",
     "node",
     "edge",
+    "three_way_valve",
     "interface",
     "unit",
     "controller",
@@ -127,6 +129,7 @@ impl ModelReader<'_> {
         self.trenches(&mut edges);
         let mut stations = self.stations(&mut nodes, &mut edges, &mut interfaces);
         self.hold_worst_consumers(&stations);
+        self.three_way_valves(&mut edges);
         let plain =
             |tree: &Tree| Plain { tree: tree.clone(), owner: String::new(), entry: String::new() };
         nodes.extend(self.items("node").iter().map(plain));

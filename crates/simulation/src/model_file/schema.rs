@@ -34,6 +34,19 @@ pub fn schema() -> Value {
     if let Some(object) = pipe_type.as_object_mut() {
         object.remove("required");
     }
+    let three_way_valve = {
+        let own = entry(&schema_for!(ThreeWayValveEntry), &[]);
+        let properties = own["properties"].as_object().into_iter().flatten();
+        let own: Vec<(&str, Value)> =
+            properties.map(|(name, schema)| (name.as_str(), schema.clone())).collect();
+        let mut valve =
+            ElementParams::schema("valve").map_or(json!({}), |valve| entry(&valve, &own));
+        for field in ["command_of", "inverse"] {
+            valve["properties"].as_object_mut().and_then(|fields| fields.remove(field));
+        }
+        valve["required"] = json!(["id", "a", "b", "ab"]);
+        valve
+    };
     let station = station_schema();
     let mut station_type = station.clone();
     for schema in station_type["oneOf"].as_array_mut().into_iter().flatten() {
@@ -54,6 +67,7 @@ pub fn schema() -> Value {
         "station": list(station),
         "node": list(entry(&schema_for!(NodeEntry), &[])),
         "edge": list(kinds(ElementParams::KINDS, ElementParams::schema, &edge_ends, &["id", "from", "to"])),
+        "three_way_valve": list(three_way_valve),
         "interface": list(entry(&schema_for!(InterfaceEntry), &[])),
         "unit": list(kinds(
             EquipmentParams::KINDS,

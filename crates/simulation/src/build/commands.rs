@@ -1,0 +1,61 @@
+//! The command signals of actuators: one each, or one for several valves.
+
+use super::Builder;
+use crate::model::EdgeSpec;
+use anergy_core::ids::SignalId;
+use anergy_core::signal::{SignalSpec, SignalTable};
+use anergy_network::elements::ElementParams;
+use anergy_network::graph::Network;
+use std::collections::HashMap;
+
+impl Builder<'_> {
+    /// A command signal for every element with an actuator.
+    pub(super) fn edge_signals(
+        &mut self,
+        network: &Network,
+        signals: &mut SignalTable,
+    ) -> Vec<Option<SignalId>> {
+        let mut commands = Vec::with_capacity(network.edges.len());
+        let mut shared: HashMap<String, SignalId> = HashMap::new();
+        for (spec, edge) in self.model.edges.iter().zip(&network.edges) {
+            let common = match &spec.params {
+                ElementParams::Valve(valve) => valve.command_of.as_deref(),
+                _ => None,
+            };
+            commands.push(edge.element.actuator().map(|actuator| {
+                let name = format!("{}.{}", common.unwrap_or(&spec.id), actuator.command);
+                if let Some(&id) = shared.get(&name) {
+                    self.check_shared(spec, &name, actuator.initial_command, signals.spec(id));
+                    return id;
+                }
+                let signal = SignalSpec {
+                    name: name.clone(),
+                    unit: actuator.unit,
+                    initial: actuator.initial_command,
+                    min: actuator.min,
+                    max: actuator.max,
+                };
+                let id = self.add_signal(signals, signal, &spec.place);
+                if common.is_some() {
+                    shared.insert(name, id);
+                }
+                id
+            }));
+        }
+        commands
+    }
+
+    /// Valves with one command begin with the same one.
+    fn check_shared(&mut self, edge: &EdgeSpec, name: &str, command: f64, shared: &SignalSpec) {
+        if command != shared.initial {
+            let what = format!("edge \"{}\"", edge.id);
+            let what = edge.place.entry_or(&what);
+            let message = format!(
+                "{what}: begins with {command}, but the other valve of \"{name}\" with {}",
+                shared.initial
+            );
+            let hint = "valves that share a command need the same initial one".to_owned();
+            self.report(message, edge.place.span.clone(), Some(hint));
+        }
+    }
+}

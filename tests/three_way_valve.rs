@@ -1,0 +1,123 @@
+//! Three-way valves: two valves, one command.
+#![allow(clippy::unwrap_used)]
+
+use anergy_core::clock::Time;
+use anergy_simulation::build::build;
+use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
+use anergy_simulation::steady::{self, Steady};
+use std::path::Path;
+
+/// Hot and cold water at 1 bar, the common node at 0.5 bar below.
+const MIXER: &str = r#"
+format = 1
+[[node]]
+id = "hot"
+kind = "pressure_boundary"
+pressure_bar = 1
+temperature_degc = 80
+[[node]]
+id = "cold"
+kind = "pressure_boundary"
+pressure_bar = 1
+temperature_degc = 40
+[[node]]
+id = "mixed"
+kind = "pressure_boundary"
+pressure_bar = 0.5
+[[three_way_valve]]
+id = "mixer"
+a = "hot"
+b = "cold"
+ab = "mixed"
+kvs_m3_h = 4
+"#;
+
+fn model(text: &str) -> Model {
+    let model = Model::from_toml(text, Path::new("."));
+    model.unwrap_or_else(|problems| panic!("{}", problems.render(text)))
+}
+
+fn flows(steady: &Steady) -> (f64, f64) {
+    let flow = |id: &str| steady.edge(id).unwrap().m_flow_kg_s;
+    (flow("mixer.a"), flow("mixer.b"))
+}
+
+fn at(opening: f64, more: &str) -> (f64, f64) {
+    flows(&steady::solve(&model(&format!("{MIXER}opening = {opening}\n{more}"))).unwrap())
+}
+
+#[test]
+fn the_total_flow_is_constant_over_the_stroke() {
+    // 4 m3/h at 1 bar: 4/3.6 sqrt(0.5) = 0.785674 kg/s with one way open, and the leak 1e-3 of it
+    let open = 4.0 / 3.6 * 0.5_f64.sqrt();
+    for i in 0..=20 {
+        let x = f64::from(i) / 20.0;
+        let (a, b) = at(x, "");
+        assert!(((a + b) / (1.001 * open) - 1.0).abs() < 1e-3, "{x}: {a} {b}");
+        // Linear with leak l: phi = l + (1 - l) x; the leak alone is laminar and less.
+        assert!((a / open - (1e-3 + 0.999 * x)).abs() < 1e-3, "{x}: {a}");
+    }
+    // An equal-percentage way a is far from that.
+    let (a, b) = at(0.5, "characteristic = \"equal_percentage\"\ncharacteristic_b = \"linear\"");
+    assert!(a < 0.2 * open && (b / open - 0.5005).abs() < 1e-9, "{a} {b}");
+    // Half the coefficient in way b.
+    let (a, b) = at(0.5, "kvs_ratio = 0.5");
+    assert!((b / a - 0.5).abs() < 1e-9, "{a} {b}");
+}
+
+#[test]
+fn diverting_turns_the_ways_and_nothing_else() {
+    let text = format!("{MIXER}opening = 0.3\n");
+    let mixing = flows(&steady::solve(&model(&text)).unwrap());
+    let diverting =
+        flows(&steady::solve(&model(&format!("{text}mode = \"diverting\"\n"))).unwrap());
+    assert!((mixing.0 + diverting.0).abs() < 1e-12 && (mixing.1 + diverting.1).abs() < 1e-12);
+    // The direction is a result: with more pressure at the common node the water is diverted.
+    let turned = text.replace("pressure_bar = 0.5", "pressure_bar = 1.5");
+    let turned = flows(&steady::solve(&model(&turned)).unwrap());
+    assert!((turned.0 + mixing.0).abs() < 1e-9 && (turned.1 + mixing.1).abs() < 1e-9);
+}
+
+#[test]
+fn one_signal_drives_both_ways_within_the_stroke_time() {
+    let text = format!(
+        "{MIXER}opening = 0\nstroke_time_s = 10\n[[schedule]]\nsignal = \"mixer.opening\"\n\
+         points = [[0, 0], [10, 0.75]]\n"
+    );
+    let plan = build(&model(&text)).unwrap();
+    let openings: Vec<&str> = plan.signals().specs().iter().map(|s| s.name.as_str()).collect();
+    assert!(openings.contains(&"mixer.opening") && !openings.contains(&"mixer.b.opening"));
+    let mut simulation = Simulation::new(plan).unwrap();
+    let get = |simulation: &Simulation, channel: &str| {
+        simulation.get(simulation.channel(channel).unwrap())
+    };
+    let step = Time::from_s(1.0).unwrap();
+    for time_s in [5.0, 13.0, 17.0, 60.0] {
+        simulation.advance_to(Time::from_s(time_s).unwrap(), step).unwrap();
+        let (a, b) = (get(&simulation, "mixer.a.opening"), get(&simulation, "mixer.b.opening"));
+        assert!((a + b - 1.0).abs() < 1e-12, "{time_s}: {a} {b}");
+        assert_eq!(time_s <= 10.0, a == 0.0);
+    }
+    assert!((get(&simulation, "mixer.a.opening") - 0.75).abs() < 1e-9);
+    // The mixture: 0.75 of 80 and 0.25 of 40 degC but for the leaks, as a weighted mean.
+    let (a, b) = (get(&simulation, "mixer.a.m_flow_kg_s"), get(&simulation, "mixer.b.m_flow_kg_s"));
+    let mixed_degc = (80.0 * a + 40.0 * b) / (a + b);
+    assert!((get(&simulation, "mixed.t_k") - 273.15 - mixed_degc).abs() < 0.01);
+}
+
+#[test]
+fn a_switching_valve_is_open_to_one_side() {
+    let (a, b) = at(0.49, "switch_at = 0.5\nleakage = 0");
+    assert!(a == 0.0 && b > 0.7, "{a} {b}");
+    let (a, b) = at(0.5, "switch_at = 0.5\nleakage = 0");
+    assert!(b == 0.0 && a > 0.7, "{a} {b}");
+}
+
+#[test]
+fn the_plain_model_is_the_same() {
+    let model = model(&format!("{MIXER}opening = 0.3\n"));
+    let text = model.to_plain_toml().unwrap();
+    let again = Model::from_toml(&text, Path::new(".")).unwrap();
+    assert_eq!(steady::solve(&again).unwrap(), steady::solve(&model).unwrap());
+}
