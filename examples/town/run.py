@@ -20,6 +20,6 @@ result = model.simulate()
 supply_degc = result["plant.unit.t_out_k"] - 273.15
 dp_bar = result["plant.worst_consumer.dp_pa"] / 1e5
 heat_mw = result["plant.station.q_flow_w"] / 1e6
-print(f"supply {supply_degc[0]:.1f} degC at the start, {supply_degc[-1]:.1f} degC after an hour")
-print(f"worst house {dp_bar[0]:.2f} bar at the start, {dp_bar[-1]:.3f} bar after an hour")
+print(f"supply {supply_degc[1]:.1f} degC after two minutes, {supply_degc[-1]:.1f} degC after an hour")
+print(f"worst house {dp_bar[1]:.2f} bar after two minutes, {dp_bar[-1]:.3f} bar after an hour")
 print(f"heat {heat_mw[-1]:.2f} MW")
