@@ -7,8 +7,8 @@
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_core::medium::Medium;
 use anergy_core::port::{Outlet, PortRequest};
-use anergy_network::elements::ElementParams;
 use anergy_network::elements::resistance::ResistanceParams;
+use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::{Edge, GRAVITY_M_S2, Network, Node, NodeKind};
 use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::NetworkState;
@@ -356,7 +356,10 @@ fn heat_balance_closes() {
                 .map(|flow| flow.m_flow_kg_s.abs() * cp * (flow.t_out_k - flow.t_in_k))
                 .sum();
             let loss_w = state.q_loss_w.iter().sum::<f64>() + state.q_loss_nodes_w;
-            let booked_j = dt_s * (units_w + state.boundary_w - loss_w);
+            let pumps = network.edges.iter().zip(&state.q_flow_w);
+            let pumps = pumps.filter(|(edge, _)| matches!(edge.element, Element::Pump(_)));
+            let pumps_w: f64 = pumps.map(|(_, q_w)| q_w).sum();
+            let booked_j = dt_s * (units_w + pumps_w + state.boundary_w - loss_w);
             let miss_j = after_j - before_j - booked_j;
             let through_j: f64 = state.m_flow_kg_s.iter().map(|m| m.abs() * cp * 50.0 * dt_s).sum();
             let largest_j = before_j.abs().max(booked_j.abs()).max(through_j);
@@ -364,7 +367,7 @@ fn heat_balance_closes() {
             if miss_j.is_nan() || miss_j.abs() > HEAT * largest_j + rounding_j {
                 return Err(format!(
                     "step {step} of {dt_s} s misses {miss_j} J: stored {before_j} J, then {after_j} J; \
-                     units {units_w} W, boundary {} W, loss {loss_w} W",
+                     units {units_w} W, pumps {pumps_w} W, boundary {} W, loss {loss_w} W",
                     state.boundary_w
                 ));
             }

@@ -213,7 +213,8 @@ fn table_pump() -> impl Strategy<Value = PumpParams> {
 /// The fields of a pump besides its curve.
 fn drive() -> impl Strategy<Value = PumpParams> {
     let numbers = (0.0..1.0, 0.0..0.2, 0.0..30.0, 0.0..20.0, 0.005..0.1);
-    let efficiency = (0.1..0.9, option::of((logarithmic(1e-5, 0.1), 0.0..0.8)), 0.0..1.0);
+    let efficiency = (0.1..0.9, option::of((logarithmic(1e-5, 0.1), 0.0..0.8)));
+    let efficiency = (efficiency.0, efficiency.1, option::of(0.0..1.0));
     (numbers, efficiency).prop_map(|(numbers, (constant, table, heat_to_water))| {
         let (speed, speed_min, rise_time_s, standby_w, delta_m) = numbers;
         PumpParams {

@@ -215,6 +215,23 @@ impl NetworkState {
         }
         stored
     }
+
+    /// Heat capacity of all water, J/K.
+    pub fn capacity_j_k(&self, network: &Network) -> f64 {
+        let nodes = network.nodes.iter().map(|node| node.water_kg(network.medium.density_kg_m3));
+        let edges = network.edges.iter().map(|edge| match edge.element.thermal() {
+            EdgeThermal::Pass => 0.0,
+            EdgeThermal::PlugFlow(pipe) => pipe.content_kg,
+            EdgeThermal::Exchanger(x) => x.volume_kg,
+        });
+        let behind =
+            network.ports.iter().map(|port| match network.edges[port.index()].element.thermal() {
+                EdgeThermal::Exchanger(x) => x.volume_kg,
+                _ => 0.0,
+            });
+        (nodes.sum::<f64>() + edges.sum::<f64>() + behind.sum::<f64>())
+            * network.medium.heat_capacity_j_kg_k
+    }
 }
 
 /// Lag of each of the two actuator filters over the rise time: `sqrt(sqrt 2 - 1)/5`.

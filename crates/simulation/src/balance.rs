@@ -5,6 +5,11 @@ use crate::simulation::Simulation;
 use anergy_core::units::l_min;
 use serde_json::{Value, json};
 
+/// Temperatures are resolved by about this: what the merging of parcels may change, K.
+const RESOLUTION_K: f64 = 1e-3;
+/// The work of 1e-6 kg/s (what a pressure reference may exchange) at 1 bar, W.
+const RESOLUTION_W: f64 = 1e-4;
+
 /// Sums of a run; energies in J since its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balances {
@@ -12,6 +17,8 @@ pub struct Balances {
     pub mass_residual_kg_s: f64,
     /// Heat from the units into the water.
     pub units_j: f64,
+    /// Heat from the losses of the pumps into the water.
+    pub pump_heat_j: f64,
     /// Enthalpy that entered through boundaries.
     pub boundary_j: f64,
     /// Heat lost to the surroundings.
@@ -22,45 +29,56 @@ pub struct Balances {
     pub electric_j: f64,
     /// Hydraulic work of pumps and boundaries.
     pub hydraulic_j: f64,
-    /// Hydraulic work dissipated in the other elements.
+    /// Hydraulic work dissipated in the other elements; this heat is left out.
     pub dissipated_j: f64,
+    /// Heat that warms all water, also what entered, by [`RESOLUTION_K`].
+    pub resolution_j: f64,
+    /// Hydraulic work of [`RESOLUTION_W`].
+    pub hydraulic_resolution_j: f64,
 }
 
 impl Balances {
     /// The balances of a simulation up to now.
     pub fn of(simulation: &Simulation) -> Self {
         let state = simulation.state();
-        let stored = state.network.stored_j(simulation.plan().network());
+        let network = simulation.plan().network();
+        let stored = state.network.stored_j(network);
+        let capacity_j_k = state.network.capacity_j_k(network)
+            + state.entered_kg * network.medium.heat_capacity_j_kg_k;
         Self {
             mass_residual_kg_s: state.largest_mass_residual_kg_s,
             units_j: state.units_j,
+            pump_heat_j: state.pump_heat_j,
             boundary_j: state.boundary_j,
             loss_j: state.loss_j,
             stored_j: stored - state.initial_stored_j,
             electric_j: state.electric_j,
             hydraulic_j: state.pump_hydraulic_j,
             dissipated_j: state.dissipated_j,
+            resolution_j: RESOLUTION_K * capacity_j_k,
+            hydraulic_resolution_j: RESOLUTION_W * state.time.as_s(),
         }
     }
 
-    /// Heat that is not accounted for, relative to the heat that was moved.
+    /// Heat that is not accounted for, relative to the heat that was moved, or to what temperatures are
+    /// resolved by where next to nothing was.
     pub fn heat_error(&self) -> f64 {
-        let moved = self
-            .units_j
-            .abs()
-            .max(self.boundary_j.abs())
-            .max(self.loss_j.abs())
-            .max(self.stored_j.abs());
-        relative(self.units_j + self.boundary_j - self.loss_j - self.stored_j, moved)
+        let gained_j = self.units_j + self.pump_heat_j + self.boundary_j;
+        let terms = [self.units_j, self.pump_heat_j, self.boundary_j, self.loss_j, self.stored_j];
+        relative(gained_j - self.loss_j - self.stored_j, &terms, self.resolution_j)
     }
 
-    /// Hydraulic work that is not accounted for, relative to the work of the pumps.
+    /// Hydraulic work that is not accounted for, relative to the work of the pumps, or to what flows are
+    /// resolved by where next to nothing flowed.
     pub fn hydraulic_error(&self) -> f64 {
-        relative(self.hydraulic_j - self.dissipated_j, self.hydraulic_j.abs())
+        let terms = [self.hydraulic_j, self.dissipated_j];
+        relative(self.hydraulic_j - self.dissipated_j, &terms, self.hydraulic_resolution_j)
     }
 }
 
-fn relative(difference: f64, scale: f64) -> f64 {
+/// A difference of the terms over the largest of them, at least over `resolution`.
+fn relative(difference: f64, terms: &[f64], resolution: f64) -> f64 {
+    let scale = terms.iter().fold(resolution, |largest, term| largest.max(term.abs()));
     if scale > 0.0 { difference.abs() / scale } else { difference.abs() }
 }
 
@@ -95,6 +113,7 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
         "key_results": key_results,
         "balances": [
             balance("heat from units", balances.units_j / 3.6e6, "kWh", heat),
+            balance("heat from pumps", balances.pump_heat_j / 3.6e6, "kWh", heat),
             balance("heat through boundaries", balances.boundary_j / 3.6e6, "kWh", heat),
             balance("heat lost", balances.loss_j / 3.6e6, "kWh", heat),
             balance("heat stored", balances.stored_j / 3.6e6, "kWh", heat),

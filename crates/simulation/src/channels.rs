@@ -54,6 +54,8 @@ pub enum Source {
     TotalElectric,
     /// Heat from all units, W.
     TotalUnits,
+    /// Heat from the losses of all pumps, W.
+    TotalPumpHeat,
     /// Heat lost by all pipes and nodes, W.
     TotalLoss,
     /// Enthalpy flow through boundaries, W.
@@ -71,6 +73,8 @@ pub enum Cumulative {
     Electric,
     /// Heat from the units.
     Units,
+    /// Heat from the losses of the pumps.
+    PumpHeat,
     /// Heat lost.
     Loss,
     /// Enthalpy through boundaries.
@@ -122,11 +126,13 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     for (quantity, unit, source) in [
         ("electric_w", "W", Source::TotalElectric),
         ("units_w", "W", Source::TotalUnits),
+        ("pump_heat_w", "W", Source::TotalPumpHeat),
         ("loss_w", "W", Source::TotalLoss),
         ("boundary_w", "W", Source::TotalBoundary),
         ("stored_j", "J", Source::Stored),
         ("electric_j", "J", Source::Cumulative(Cumulative::Electric)),
         ("units_j", "J", Source::Cumulative(Cumulative::Units)),
+        ("pump_heat_j", "J", Source::Cumulative(Cumulative::PumpHeat)),
         ("loss_j", "J", Source::Cumulative(Cumulative::Loss)),
         ("boundary_j", "J", Source::Cumulative(Cumulative::Boundary)),
     ] {
@@ -166,9 +172,12 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
     list.add(group, name, "m_flow_kg_s", "kg s-1", Source::EdgeFlow(i));
     list.add(group, name, "dp_pa", "Pa", Source::EdgePressure(i));
     match element {
-        Element::Pump(_) => {
+        Element::Pump(pump) => {
             list.add(group, name, "speed", "1", Source::PumpSpeed(i));
             list.add(group, name, "power_w", "W", Source::EdgePower(i));
+            if pump.warms_water() {
+                list.add(group, name, "q_flow_w", "W", Source::EdgeHeat(i));
+            }
         }
         Element::Valve(_) | Element::BallValve(_) => {
             list.add(group, name, "opening", "1", Source::EdgePosition(i));
@@ -235,11 +244,13 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::Signal(id) => state.signals[id.index()],
         Source::TotalElectric => plan.total_electric_w(network),
         Source::TotalUnits => plan.total_units_w(network),
+        Source::TotalPumpHeat => plan.total_pump_heat_w(network),
         Source::TotalLoss => plan.total_loss_w(network),
         Source::TotalBoundary => network.boundary_w,
         Source::Stored => network.stored_j(&plan.network),
         Source::Cumulative(Cumulative::Electric) => state.electric_j,
         Source::Cumulative(Cumulative::Units) => state.units_j,
+        Source::Cumulative(Cumulative::PumpHeat) => state.pump_heat_j,
         Source::Cumulative(Cumulative::Loss) => state.loss_j,
         Source::Cumulative(Cumulative::Boundary) => state.boundary_j,
     }

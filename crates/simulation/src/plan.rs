@@ -8,6 +8,7 @@ use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::recorder::{Channel, NetworkMap};
 use anergy_core::signal::SignalTable;
+use anergy_network::elements::Element;
 use anergy_network::graph::Network;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
@@ -113,6 +114,12 @@ impl Plan {
     pub(crate) fn total_units_w(&self, state: &NetworkState) -> f64 {
         let cp = self.network.medium.heat_capacity_j_kg_k;
         state.port_flows.iter().map(|f| f.m_flow_kg_s.abs() * cp * (f.t_out_k - f.t_in_k)).sum()
+    }
+
+    /// Heat from the losses of pumps, W: a unit never stands on a pump.
+    pub(crate) fn total_pump_heat_w(&self, state: &NetworkState) -> f64 {
+        let pumps = self.network.edges.iter().zip(&state.q_flow_w);
+        pumps.filter(|(edge, _)| matches!(edge.element, Element::Pump(_))).map(|(_, q)| q).sum()
     }
 
     pub(crate) fn total_loss_w(&self, state: &NetworkState) -> f64 {

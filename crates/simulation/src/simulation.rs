@@ -281,6 +281,7 @@ impl Simulation {
         let network = &state.network;
         state.electric_j += plan.total_electric_w(network) * dt_s;
         state.units_j += plan.total_units_w(network) * dt_s;
+        state.pump_heat_j += plan.total_pump_heat_w(network) * dt_s;
         state.loss_j += plan.total_loss_w(network) * dt_s;
         state.boundary_j += network.boundary_w * dt_s;
         for (heat, station) in state.station_heat_j.iter_mut().zip(&plan.stations) {
@@ -300,6 +301,7 @@ impl Simulation {
         }
         for (i, node) in plan.network.nodes.iter().enumerate() {
             if node.kind != NodeKind::Junction {
+                state.entered_kg += network.exchange_kg_s[i].max(0.0) * dt_s;
                 state.pump_hydraulic_j +=
                     network.exchange_kg_s[i] * network.p_pa[i] / density * dt_s;
             }

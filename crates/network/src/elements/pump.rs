@@ -6,8 +6,9 @@
 //! power law `H = H0 - H0 (V/V_free)^n`, odd in the flow, straight beyond `+-V_free`; a table of points
 //! with monotone interpolation; or a polynomial `H = sum c_i V^i` up to its first zero. The last two are
 //! continued linearly beyond their end and by `H0 + s|V| + a V^2` for reverse flow. Power
-//! `P = V dp/eta` for pumping flow, plus standby, with `eta = eta_h eta_m` or a table `eta(V/u)`; the
-//! water takes up the heat `max(f P - V dp, 0)` in the pump (without the standby power).
+//! `P = V dp/eta` for pumping flow, plus standby, with `eta = eta_h eta_m` or a table `eta(V/u)`; with
+//! `heat_to_water = f` the water takes up the heat `max(f P - V dp, 0)` in the pump (without the standby
+//! power). The work `V dp` itself is not given back where it dissipates: friction warms no water.
 //!
 //! With `mode = "flow"` or `"head"` the pump chooses the speed that holds its set value, up to the full
 //! one and down to standstill: a median of three rising laws (`mode.rs`).
@@ -100,10 +101,10 @@ pub struct PumpParams {
     /// Overall efficiencies of the table, from wire to water, instead of the two constants.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub efficiency: Vec<f64>,
-    /// Share of the electric power that ends in the water: 1 for a wet rotor, `efficiency_motor` for a
-    /// dry motor in the open.
-    #[serde(default = "one")]
-    pub heat_to_water: f64,
+    /// Share of the electric power (without the standby power) that ends in the water: 1 for a wet
+    /// rotor, `efficiency_motor` for a dry motor in the open. Absent: the pump does not warm the water.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat_to_water: Option<f64>,
     /// Electric power while off, W.
     #[serde(default)]
     pub standby_w: f64,
@@ -151,7 +152,7 @@ impl Default for PumpParams {
             efficiency_motor: default_efficiency(),
             efficiency_v_flow_m3_s: Vec::new(),
             efficiency: Vec::new(),
-            heat_to_water: one(),
+            heat_to_water: None,
             standby_w: 0.0,
             delta_m: default_delta_m(),
         }
@@ -164,7 +165,7 @@ pub struct Pump {
     curve: HeadCurve,
     mode: PumpMode,
     efficiency: Efficiency,
-    heat_to_water: f64,
+    heat_to_water: Option<f64>,
     standby_w: f64,
     actuator: Actuator,
     speed_min: f64,
@@ -184,7 +185,10 @@ impl PumpParams {
             curve,
             mode: self.mode,
             efficiency: self.overall_efficiency()?,
-            heat_to_water: ratio("heat_to_water", self.heat_to_water)?,
+            heat_to_water: self
+                .heat_to_water
+                .map(|share| ratio("heat_to_water", share))
+                .transpose()?,
             standby_w: not_negative("standby_w", self.standby_w)?,
             actuator,
             speed_min: self.speed_min,
@@ -267,6 +271,11 @@ impl Pump {
         self.curve.speed_at(m_flow_kg_s, dp_pa, density_kg_m3, self.speed_max)
     }
 
+    /// Whether the losses of the pump warm the water that passes.
+    pub fn warms_water(&self) -> bool {
+        self.heat_to_water.is_some()
+    }
+
     /// The relative speed at a flow: commanded, or what the mode leads to.
     pub fn speed(&self, m_flow_kg_s: f64, state: &EdgeState) -> f64 {
         match self.mode {
@@ -321,8 +330,9 @@ impl TwoPort for Pump {
     }
 
     fn heat_to_water_w(&self, m: f64, state: &EdgeState) -> f64 {
+        let Some(share) = self.heat_to_water else { return 0.0 };
         let (hydraulic_w, efficiency) = self.pumping(m, state);
-        (self.heat_to_water * hydraulic_w / efficiency - hydraulic_w).max(0.0)
+        (share * hydraulic_w / efficiency - hydraulic_w).max(0.0)
     }
 }
 
@@ -376,6 +386,7 @@ mod tests {
             efficiency_v_flow_m3_s: vec![0.0, 4e-4, 9e-4],
             efficiency: vec![0.0, 0.4, 0.2],
             standby_w: 3.0,
+            heat_to_water: Some(1.0),
             ..PumpParams::default()
         };
         let pump = params.build(&Medium::default()).unwrap();
@@ -390,9 +401,11 @@ mod tests {
         assert_eq!(pump.electric_power_w(0.2, &state(0.0)), Some(3.0));
         assert_eq!(pump.heat_to_water_w(-0.2, &state(1.0)), 0.0);
         // A dry motor, eta_m = 0.7 of 0.49: 0.7 P - V H = V H (0.7/0.49 - 1)
-        let dry = PumpParams { heat_to_water: 0.7, ..PumpParams::default() };
+        let dry = PumpParams { heat_to_water: Some(0.7), ..PumpParams::default() };
         let dry = dry.build(&Medium::default()).unwrap();
         assert!((dry.heat_to_water_w(0.4, &state(1.0)) - 13.06138 * 0.428_571).abs() < 1e-3);
+        let silent = PumpParams::default().build(&Medium::default()).unwrap();
+        assert_eq!(silent.heat_to_water_w(0.4, &state(1.0)), 0.0);
         let params = PumpParams { efficiency: vec![70.0, 60.0, 50.0], ..params };
         assert_eq!(params.build(&Medium::default()).unwrap_err().field(), Some("efficiency"));
     }

@@ -24,7 +24,10 @@ impl Transport {
         let cp = network.medium.heat_capacity_j_kg_k;
         match edge.element.thermal() {
             EdgeThermal::Pass => match self.port_of_edge[i] {
-                NONE => Relation::PASS,
+                NONE => {
+                    let q_w = edge.element.heat_to_water_w(m, &state.edge_state(network, i));
+                    Relation { constant_k: q_w / (m.abs() * cp), ..Relation::PASS }
+                }
                 port => match state.requests[port as usize].outlet {
                     Outlet::Temperature(t_k) => Relation::constant(t_k),
                     Outlet::HeatFlow(q_w) => {
