@@ -213,8 +213,7 @@ fn table_pump() -> impl Strategy<Value = PumpParams> {
 /// The fields of a pump besides its curve.
 fn drive() -> impl Strategy<Value = PumpParams> {
     let numbers = (0.0..1.0, 0.0..0.2, 0.0..30.0, 0.0..20.0, 0.005..0.1);
-    let efficiency = (0.1..0.9, option::of((logarithmic(1e-5, 0.1), 0.0..0.8)));
-    let efficiency = (efficiency.0, efficiency.1, option::of(0.0..1.0));
+    let efficiency = (0.1..0.9, option::of((logarithmic(1e-5, 0.1), 0.0..0.8)), 0.0..1.0);
     (numbers, efficiency).prop_map(|(numbers, (constant, table, heat_to_water))| {
         let (speed, speed_min, rise_time_s, standby_w, delta_m) = numbers;
         PumpParams {
@@ -226,7 +225,8 @@ fn drive() -> impl Strategy<Value = PumpParams> {
             efficiency_motor: constant,
             efficiency_v_flow_m3_s: table.map_or(vec![], |(v, _)| vec![0.0, v, 2.0 * v]),
             efficiency: table.map_or(vec![], |(_, best)| vec![0.0, best, 0.5 * best]),
-            heat_to_water,
+            // A fifth of the pumps warms no water.
+            heat_to_water: (heat_to_water > 0.2).then_some(heat_to_water),
             standby_w,
             delta_m,
             ..PumpParams::default()

@@ -70,6 +70,9 @@ pub fn print_steady(model: &Model, steady: &Steady) {
     for unreached in &steady.unreached {
         line!("\nwarning: {unreached}");
     }
+    for crossing in &steady.crossed {
+        line!("\nwarning: {crossing}");
+    }
     line!(
         "\n{} Newton iterations, largest residual {:.1e} Pa",
         steady.iterations,

@@ -2,7 +2,8 @@
 //!
 //! A *circuit* is a connected component at water level; heat exchangers connect circuits thermally
 //! only. Each circuit needs exactly one pressure reference (pressure holding, exchanges no water) or
-//! at least one pressure boundary (open ends, reservoirs), not both.
+//! (or an expansion vessel, which takes up and gives what sources bring and take) or at least one
+//! pressure boundary (open ends, reservoirs), not both.
 
 use crate::elements::Element;
 use crate::two_port::{Characteristic, EdgeState};
@@ -20,6 +21,8 @@ pub enum NodeKind {
     Junction,
     /// The pressure is held, no water is exchanged.
     PressureReference,
+    /// The pressure is that of the gas in an expansion vessel, which takes water up and gives it back.
+    ExpansionVessel,
     /// The pressure is given, water enters (with a given temperature) or leaves.
     PressureBoundary,
     /// A flow enters (positive, with a given temperature) or leaves the network.
@@ -215,7 +218,8 @@ impl Network {
             let of_kind = |kind: NodeKind| -> Vec<NodeId> {
                 circuit.iter().copied().filter(|id| self.nodes[id.index()].kind == kind).collect()
             };
-            let references = of_kind(NodeKind::PressureReference);
+            let mut references = of_kind(NodeKind::PressureReference);
+            references.extend(of_kind(NodeKind::ExpansionVessel));
             let boundaries = of_kind(NodeKind::PressureBoundary);
             match (references.as_slice(), boundaries.as_slice()) {
                 ([], []) => problems.push(GraphProblem::NoPressureReference { circuit }),
@@ -233,7 +237,7 @@ impl Network {
         let mut merged = UnionFind::new(self.nodes.len() + 1);
         let ground = self.nodes.len();
         for (i, node) in self.nodes.iter().enumerate() {
-            if matches!(node.kind, NodeKind::PressureReference | NodeKind::PressureBoundary) {
+            if node.has_fixed_pressure() {
                 merged.union(i, ground);
             }
         }

@@ -8,6 +8,7 @@ pub mod effectiveness;
 pub mod elements;
 pub mod friction;
 pub mod graph;
+pub mod holding;
 pub mod hydraulics;
 pub mod interface;
 pub mod state;

@@ -250,7 +250,7 @@ impl crate::graph::Node {
     /// Whether the node's pressure is given.
     #[inline]
     pub fn has_fixed_pressure(&self) -> bool {
-        matches!(self.kind, NodeKind::PressureReference | NodeKind::PressureBoundary)
+        !matches!(self.kind, NodeKind::Junction | NodeKind::Source)
     }
 }
 

@@ -71,9 +71,9 @@ fn enclosed(network: &Network) -> Option<GraphProblem> {
     }
     let boundary = network.nodes.len();
     let mut parts = UnionFind::new(boundary + 1);
-    for (i, _) in
-        network.nodes.iter().enumerate().filter(|(_, n)| n.kind == NodeKind::PressureBoundary)
-    {
+    let open =
+        |kind: NodeKind| matches!(kind, NodeKind::PressureBoundary | NodeKind::ExpansionVessel);
+    for (i, _) in network.nodes.iter().enumerate().filter(|(_, n)| open(n.kind)) {
         parts.union(i, boundary);
     }
     for (i, edge) in network.edges.iter().enumerate() {

@@ -3,6 +3,7 @@
 mod commands;
 mod network;
 mod prescribed;
+mod pressure;
 mod signals;
 
 pub(crate) use network::pipe_temperatures;
@@ -21,6 +22,7 @@ use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::graph::Network;
+use anergy_network::holding::VesselState;
 use anergy_network::interface::{Station, StationState};
 use anergy_network::state::NetworkState;
 use signals::{Writer, free_signal, temperature_signal};
@@ -173,7 +175,11 @@ impl Builder<'_> {
             // Controllers measure channels, which need a sound plan.
             return None;
         }
-        let initial = self.initial_state(&network, &units, &stations, &signals);
+        let vessels = self.vessels(&network, &node_ids);
+        let pressure_watches = self.pressure_watches(&network, &node_ids);
+        let mut initial = self.initial_state(&network, &units, &stations, &signals);
+        initial.vessels = vec![VesselState::default(); vessels.len()];
+        initial.crossed = vec![false; pressure_watches.len()];
         let mut plan = Plan {
             node_names: model.nodes.iter().map(|node| node.entry.id.clone()).collect(),
             edge_names: model.edges.iter().map(|edge| edge.id.clone()).collect(),
@@ -184,6 +190,8 @@ impl Builder<'_> {
             controllers: Vec::new(),
             worst_points,
             prescriptions,
+            vessels,
+            pressure_watches,
             drivers,
             signals,
             commands,
@@ -297,6 +305,8 @@ impl Builder<'_> {
             unit_outputs: vec![0.0; units.last().map_or(0, |unit| unit.outputs.end)],
             stations: vec![StationState::default(); stations.len()],
             station_heat_j: vec![0.0; stations.len()],
+            vessels: Vec::new(),
+            crossed: Vec::new(),
             controller_states: Vec::new(),
             next_tick: Vec::new(),
             last_tick: Vec::new(),

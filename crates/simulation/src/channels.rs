@@ -16,6 +16,8 @@ pub enum Source {
     NodeTemperature(usize),
     /// Water that a boundary brings in, kg/s.
     NodeExchange(usize),
+    /// Gas in an expansion vessel, m3.
+    VesselGas(usize),
     /// Flow of an edge, kg/s.
     EdgeFlow(usize),
     /// Pressure difference of an edge, Pa.
@@ -91,6 +93,10 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
             let exchange = Source::NodeExchange(i);
             list.add(ChannelGroup::Nodes, name, "exchange_kg_s", "kg s-1", exchange);
         }
+    }
+    for (i, vessel) in plan.vessels.iter().enumerate() {
+        let name = &plan.node_names[vessel.node.index()];
+        list.add(ChannelGroup::Nodes, name, "vessel_gas_m3", "m3", Source::VesselGas(i));
     }
     for (i, name) in plan.edge_names.iter().enumerate() {
         edge_channels(&mut list, plan, i, name);
@@ -217,6 +223,7 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::NodePressure(i) => network.p_pa[i],
         Source::NodeTemperature(i) => network.t_node_k[i],
         Source::NodeExchange(i) => network.exchange_kg_s[i],
+        Source::VesselGas(i) => state.vessels[i].gas_m3,
         Source::EdgeFlow(i) => network.m_flow_kg_s[i],
         Source::EdgePressure(i) => network.dp_pa(&plan.network, i),
         Source::EdgePosition(i) => network.position[i],

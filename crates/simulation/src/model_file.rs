@@ -281,6 +281,12 @@ pub struct NodeEntry {
     /// Temperature of entering water, K (pressure_boundary, source).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature_k: Option<f64>,
+    /// Below this pressure the node raises `pressure_low`, Pa. Absent: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_pressure_pa: Option<f64>,
+    /// Above this pressure the node raises `pressure_high`, Pa. Absent: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_pressure_pa: Option<f64>,
     /// Position on the map, m east.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x_m: Option<f64>,
@@ -308,9 +314,21 @@ pub enum NodeEntryKind {
 pub struct PressureReferenceEntry {
     /// The node.
     pub node: String,
-    /// Its pressure above the atmosphere, Pa.
+    /// Its pressure above the atmosphere, Pa; with a vessel that at the start of the run.
     #[serde(default = "holding_pressure")]
     pub pressure_pa: f64,
+    /// Volume of a membrane expansion vessel at the node, m3. Absent: the pressure is held whatever happens.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vessel_volume_m3: Option<f64>,
+    /// Pressure above the atmosphere of the gas in the vessel while it holds no water, Pa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vessel_precharge_pa: Option<f64>,
+    /// Below this pressure anywhere its circuit raises `pressure_low`, Pa. Absent: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_pressure_pa: Option<f64>,
+    /// Above this pressure anywhere its circuit raises `pressure_high`, Pa. Absent: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_pressure_pa: Option<f64>,
 }
 
 fn holding_pressure() -> f64 {

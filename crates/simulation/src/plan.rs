@@ -10,6 +10,7 @@ use anergy_core::recorder::{Channel, NetworkMap};
 use anergy_core::signal::SignalTable;
 use anergy_network::elements::Element;
 use anergy_network::graph::Network;
+use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::Equipment;
@@ -64,6 +65,23 @@ pub(crate) struct NodeInputs {
     pub t_k: Option<SignalId>,
 }
 
+/// A limit of the pressures of some nodes.
+#[derive(Debug, Clone)]
+pub(crate) struct PressureWatch {
+    pub nodes: Vec<usize>,
+    pub limit_pa: f64,
+    pub limit: Limit,
+}
+
+/// What a limit means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Limit {
+    Low,
+    High,
+    /// The precharge pressure of an expansion vessel.
+    VesselEmpty,
+}
+
 /// Everything that does not change during a run.
 #[derive(Debug)]
 pub struct Plan {
@@ -78,6 +96,8 @@ pub struct Plan {
     pub(crate) controllers: Vec<PlannedController>,
     pub(crate) worst_points: Vec<WorstPoint>,
     pub(crate) prescriptions: Vec<PlannedPrescription>,
+    pub(crate) vessels: Vec<Vessel>,
+    pub(crate) pressure_watches: Vec<PressureWatch>,
     pub(crate) drivers: Vec<Driver>,
     pub(crate) signals: SignalTable,
     /// Command signal of each edge.

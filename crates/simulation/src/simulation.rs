@@ -1,6 +1,7 @@
 //! A simulation: an immutable plan, a state that is plain data, and the step.
 
 mod access;
+mod pressure;
 mod words;
 
 use crate::channels;
@@ -17,6 +18,8 @@ use anergy_network::graph::NodeKind;
 use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::Hold;
 use anergy_network::transport::Transport;
+pub use pressure::Crossing;
+pub(crate) use pressure::crossings;
 use std::sync::Arc;
 pub use words::Unreached;
 use words::{blocked_event, named, prescribed_event};
@@ -70,7 +73,9 @@ impl Simulation {
         }
         self.request_units();
         self.apply_inputs();
+        self.fill_vessels();
         self.solve_hydraulics()?;
+        self.watch_pressures(Time::ZERO);
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
         Ok(())
     }
@@ -92,6 +97,8 @@ impl Simulation {
         self.advance_units(dt_s);
         self.watch_stations(end, dt_s);
         self.book(dt_s);
+        self.watch_pressures(end);
+        self.hold_pressures(dt_s);
         self.state.time = end;
         self.state.steps += 1;
         Ok(())
@@ -335,6 +342,7 @@ impl Simulation {
             .settle(&self.plan.network, &mut self.state.network)
             .map_err(|source| RunError::Singular { time: "steady state".into(), source })?;
         self.advance_units(0.0);
+        self.hold_pressures(0.0);
         Ok(report)
     }
 

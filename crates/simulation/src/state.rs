@@ -2,6 +2,7 @@
 
 use crate::error::RunError;
 use anergy_core::clock::Time;
+use anergy_network::holding::VesselState;
 use anergy_network::interface::StationState;
 use anergy_network::state::NetworkState;
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,9 @@ pub struct State {
     pub(crate) unit_outputs: Vec<f64>,
     pub(crate) stations: Vec<StationState>,
     pub(crate) station_heat_j: Vec<f64>,
+    pub(crate) vessels: Vec<VesselState>,
+    /// Whether each watched limit is crossed.
+    pub(crate) crossed: Vec<bool>,
     pub(crate) controller_states: Vec<f64>,
     pub(crate) next_tick: Vec<Time>,
     pub(crate) last_tick: Vec<Time>,

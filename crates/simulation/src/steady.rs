@@ -8,7 +8,7 @@ use crate::build::build;
 use crate::channels;
 use crate::error::RunError;
 use crate::model::Model;
-use crate::simulation::{Simulation, Unreached};
+use crate::simulation::{Crossing, Simulation, Unreached, crossings};
 use anergy_network::hydraulics::HydraulicReport;
 use anergy_network::state::Hold;
 use nalgebra::{DMatrix, DVector};
@@ -18,6 +18,8 @@ use serde::Serialize;
 const SETTLED_K: f64 = 1e-9;
 /// Flows have settled when none changes by more, kg/s.
 const SETTLED_KG_S: f64 = 1e-11;
+/// Water that a vessel may take up in the steady state, kg/s, as what a pressure reference may exchange.
+const VESSEL_KG_S: f64 = 1e-6;
 const MAX_ROUNDS: u32 = 20_000;
 const MAX_CONTROL_ROUNDS: u32 = 60;
 /// Actuator change for the difference quotient, relative to its range where that is finite.
@@ -65,6 +67,9 @@ pub struct Steady {
     /// Prescriptions that cannot be reached.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unreached: Vec<Unreached>,
+    /// Pressure limits that are crossed, each at its worst node.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub crossed: Vec<Crossing>,
 }
 
 impl Steady {
@@ -104,7 +109,24 @@ pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> 
     }
     simulation.state_mut().network.invalidate_hydraulics();
     let last = simulation.solve_hydraulics()?;
+    check_vessels(simulation)?;
     Ok(HydraulicReport { iterations: first.iterations, ..last })
+}
+
+/// What enters a vessel all the time has no steady state.
+fn check_vessels(simulation: &Simulation) -> Result<(), RunError> {
+    let (plan, network) = (simulation.plan(), &simulation.state().network);
+    for vessel in &plan.vessels {
+        let m_flow_kg_s = -network.exchange_kg_s[vessel.node.index()];
+        if m_flow_kg_s.abs() > VESSEL_KG_S {
+            return Err(RunError::Unbalanced {
+                time: "steady state".into(),
+                node: plan.node_names[vessel.node.index()].clone(),
+                m_flow_kg_s,
+            });
+        }
+    }
+    Ok(())
 }
 
 fn settle_temperatures(simulation: &mut Simulation) -> Result<(), RunError> {
@@ -288,5 +310,6 @@ pub fn table(simulation: &Simulation, report: HydraulicReport) -> Steady {
             .filter(|&k| network.prescribed[k].hold != Hold::Held)
             .map(|k| Unreached::new(plan, simulation.state(), k))
             .collect(),
+        crossed: crossings(plan, simulation.state()),
     }
 }

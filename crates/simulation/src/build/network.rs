@@ -26,10 +26,15 @@ pub(crate) fn pipe_temperatures(what: &str, pipe: &PipeParams, place: &Place) ->
     water.into_iter().chain(around).collect()
 }
 
-fn below_vacuum(what: &str, pressure_pa: f64, place: &Place) -> Option<Diagnostic> {
+pub(super) fn below_vacuum(
+    what: &str,
+    field: &str,
+    pressure_pa: f64,
+    place: &Place,
+) -> Option<Diagnostic> {
     (pressure_pa < VACUUM_PA).then(|| {
-        let message = format!("pressure_pa = {pressure_pa} is below a vacuum");
-        refused(what, place, Some("pressure_pa"), &message)
+        let message = format!("{field} = {pressure_pa} is below a vacuum");
+        refused(what, place, Some(field), &message)
             .with_hint("pressures are above the atmosphere: not below -1 bar")
     })
 }
@@ -42,7 +47,7 @@ impl Builder<'_> {
                 self.problems.extend(WATER.problem(&what, "temperature_k", t_k, &spec.place));
             }
             if let Some(pressure_pa) = spec.entry.pressure_pa {
-                self.problems.extend(below_vacuum(&what, pressure_pa, &spec.place));
+                self.problems.extend(below_vacuum(&what, "pressure_pa", pressure_pa, &spec.place));
             }
         }
         self.model
@@ -63,7 +68,8 @@ impl Builder<'_> {
     pub(super) fn references(&mut self, nodes: &mut [Node], node_ids: &HashMap<&str, usize>) {
         for spec in &self.model.references {
             let pressure_pa = spec.entry.pressure_pa;
-            self.problems.extend(below_vacuum("pressure_reference", pressure_pa, &spec.place));
+            let what = "pressure_reference";
+            self.problems.extend(below_vacuum(what, "pressure_pa", pressure_pa, &spec.place));
             let name = spec.entry.node.as_str();
             let Some(&node) = node_ids.get(name) else {
                 let hint = did_you_mean(name, node_ids.keys().copied());
@@ -72,7 +78,10 @@ impl Builder<'_> {
                 continue;
             };
             if nodes[node].kind == NodeKind::Junction {
-                nodes[node].kind = NodeKind::PressureReference;
+                nodes[node].kind = match spec.entry.vessel_volume_m3 {
+                    Some(_) => NodeKind::ExpansionVessel,
+                    None => NodeKind::PressureReference,
+                };
             } else {
                 let message = format!(
                     "pressure_reference: node \"{name}\" is a boundary or source, or a reference already"

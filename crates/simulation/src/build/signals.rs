@@ -37,7 +37,8 @@ impl Builder<'_> {
             let exchanges = entry.kind != NodeEntryKind::Junction;
             if held.is_some() || exchanges {
                 let of_kind = |kind| entry.kind == kind;
-                let p_pa = (held.is_some() || of_kind(NodeEntryKind::PressureBoundary))
+                let held = held.is_some_and(|r| r.entry.vessel_volume_m3.is_none());
+                let p_pa = (held || of_kind(NodeEntryKind::PressureBoundary))
                     .then(|| add("pressure_pa", "pa", pressure.unwrap_or(0.0)));
                 let m_flow_kg_s = of_kind(NodeEntryKind::Source)
                     .then(|| add("m_flow_kg_s", "kg_s", entry.m_flow_kg_s.unwrap_or(0.0)));
