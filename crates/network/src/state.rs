@@ -29,6 +29,9 @@ pub struct NetworkState {
     pub ambient_k: f64,
     /// Flow that fixed nodes and sources bring into the network, kg/s.
     pub exchange_kg_s: Vec<f64>,
+    /// Density at which the water of each edge weighs on the pressures, kg/m3, where buoyancy counts;
+    /// empty where all water weighs the same.
+    pub density_kg_m3: Vec<f64>,
     /// Value and state of each prescription of the network.
     pub prescribed: Vec<Prescribed>,
     /// Whether flows and pressures belong to the present positions and boundary values.
@@ -99,6 +102,7 @@ impl NetworkState {
             surroundings_k: vec![initial_k; edges],
             ambient_k: initial_k,
             exchange_kg_s: vec![0.0; nodes],
+            density_kg_m3: Vec::new(),
             prescribed: vec![Prescribed::default(); network.prescriptions.len()],
             hydraulics_valid: false,
             t_node_k: vec![initial_k; nodes],

@@ -15,6 +15,7 @@ mod edges;
 mod nodes;
 pub mod parcels;
 mod plug_flow;
+mod weight;
 
 use crate::graph::Network;
 use crate::state::NetworkState;
@@ -149,6 +150,7 @@ impl Transport {
         self.node_temperatures(network, state, Some(dt_s))?;
         self.advance_edges(network, state, dt_s);
         self.advance_nodes(network, state, dt_s);
+        self.weigh(network, state);
         Ok(())
     }
 
@@ -172,6 +174,7 @@ impl Transport {
             self.settle_edge(network, state, edge);
         }
         state.t_node_k.copy_from_slice(&self.t_mean_k);
+        self.weigh_settled(network, state);
         Ok(())
     }
 }

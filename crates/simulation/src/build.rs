@@ -293,6 +293,9 @@ impl Builder<'_> {
         // A cold solve starts from the pressure level of the model.
         let level = self.model.references.first().map_or(0.0, |r| r.entry.pressure_pa);
         state.p_pa.fill(level);
+        if self.model.thermosiphon {
+            state.follow_densities(network);
+        }
         State {
             time: Time::ZERO,
             network: state,

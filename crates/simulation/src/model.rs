@@ -218,6 +218,8 @@ pub struct Model {
     pub medium: Medium,
     /// Gravity, m/s2.
     pub gravity_m_s2: f64,
+    /// Whether warm water is lighter than cold water: buoyancy.
+    pub thermosiphon: bool,
     /// Temperature around the pipes, K.
     pub ground_k: f64,
     /// Nodes.

@@ -6,6 +6,7 @@
 mod duration;
 pub mod expand;
 mod plant;
+mod nodes;
 pub mod read;
 pub mod schema;
 pub mod series;
@@ -16,6 +17,7 @@ pub use duration::Duration;
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use tables::NetworkEntry;
 pub use three_way_valve::{ThreeWayMode, ThreeWayValveEntry};
+pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 
 use anergy_core::clock::Time;
 use schemars::JsonSchema;
@@ -34,6 +36,9 @@ pub struct ModelEntry {
     /// Gravity in m/s2.
     #[serde(default = "gravity")]
     pub gravity: f64,
+    /// Whether warm water is lighter than cold water: buoyancy.
+    #[serde(default)]
+    pub thermosiphon: bool,
 }
 
 fn untitled() -> String {
@@ -255,84 +260,6 @@ pub struct PrescribedEntry {
     pub unit: Option<String>,
     /// The command that is free: `PUMP.speed`, `VALVE.opening`.
     pub free: String,
-}
-
-/// `[[node]]`: a plain node.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct NodeEntry {
-    /// Name.
-    pub id: String,
-    /// What is known at it.
-    #[serde(default)]
-    pub kind: NodeEntryKind,
-    /// Elevation, m.
-    #[serde(default)]
-    pub elevation_m: f64,
-    /// Mixed water volume, m3.
-    #[serde(default)]
-    pub volume_m3: f64,
-    /// Given pressure, Pa (pressure_boundary).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pressure_pa: Option<f64>,
-    /// Flow into the network, kg/s; negative takes water out (source).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub m_flow_kg_s: Option<f64>,
-    /// Temperature of entering water, K (pressure_boundary, source).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub temperature_k: Option<f64>,
-    /// Below this pressure the node raises `pressure_low`, Pa. Absent: never.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub min_pressure_pa: Option<f64>,
-    /// Above this pressure the node raises `pressure_high`, Pa. Absent: never.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_pressure_pa: Option<f64>,
-    /// Position on the map, m east.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub x_m: Option<f64>,
-    /// Position on the map, m north.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub y_m: Option<f64>,
-}
-
-/// What is known at a plain node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum NodeEntryKind {
-    /// Nothing.
-    #[default]
-    Junction,
-    /// The pressure; water enters or leaves.
-    PressureBoundary,
-    /// The flow that enters or leaves.
-    Source,
-}
-
-/// `[pressure_reference]` (or several as `[[pressure_reference]]`): pressure holding of a circuit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PressureReferenceEntry {
-    /// The node.
-    pub node: String,
-    /// Its pressure above the atmosphere, Pa; with a vessel that at the start of the run.
-    #[serde(default = "holding_pressure")]
-    pub pressure_pa: f64,
-    /// Volume of a membrane expansion vessel at the node, m3. Absent: the pressure is held whatever happens.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub vessel_volume_m3: Option<f64>,
-    /// Pressure above the atmosphere of the gas in the vessel while it holds no water, Pa.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub vessel_precharge_pa: Option<f64>,
-    /// Below this pressure anywhere its circuit raises `pressure_low`, Pa. Absent: never.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub min_pressure_pa: Option<f64>,
-    /// Above this pressure anywhere its circuit raises `pressure_high`, Pa. Absent: never.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_pressure_pa: Option<f64>,
-}
-
-fn holding_pressure() -> f64 {
-    1.5e5
 }
 
 /// How a signal runs between its points.

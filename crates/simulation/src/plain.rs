@@ -14,7 +14,11 @@ impl Model {
     pub fn to_plain_toml(&self) -> Result<String, Diagnostics> {
         let mut file = Map::new();
         file.insert("format".into(), json!(1));
-        file.insert("model".into(), json!({ "name": self.name, "gravity": self.gravity_m_s2 }));
+        let mut about = json!({ "name": self.name, "gravity": self.gravity_m_s2 });
+        if self.thermosiphon {
+            about["thermosiphon"] = json!(true);
+        }
+        file.insert("model".into(), about);
         file.insert("run".into(), without_nulls(json!(self.run)));
         file.insert(
             "fluid".into(),

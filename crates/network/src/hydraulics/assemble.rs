@@ -148,6 +148,13 @@ impl NodalSystem {
         kind: &[Kind],
         laws: &Laws,
     ) -> Result<(), HydraulicError> {
+        // Buoyancy: what the water weighs at its temperature.
+        for (i, density_kg_m3) in state.density_kg_m3.iter().enumerate() {
+            let z_m = |id: NodeId| network.nodes[id.index()].elevation_m;
+            let edge = &network.edges[i];
+            self.gravity_pa[i] =
+                density_kg_m3 * network.gravity_m_s2 * (z_m(edge.to) - z_m(edge.from));
+        }
         for (i, node) in network.nodes.iter().enumerate() {
             if node.has_fixed_pressure() {
                 state.p_pa[i] = state.given_p_pa[i];

@@ -138,6 +138,17 @@ impl Parcels {
         self.iter(edge).map(|parcel| parcel.mass_kg * medium.enthalpy_j_kg(parcel.mean_k())).sum()
     }
 
+    /// Mean temperature of the content of a pipe, K; `None` for other edges.
+    pub fn mean_k(&self, edge: usize) -> Option<f64> {
+        self.ring(edge)?;
+        let (mut content_kg, mut sum) = (0.0, 0.0);
+        for parcel in self.iter(edge) {
+            content_kg += parcel.mass_kg;
+            sum += parcel.mass_kg * parcel.mean_k();
+        }
+        Some(sum / content_kg)
+    }
+
     /// Fills a pipe with water of one temperature.
     pub fn fill(&mut self, edge: usize, t_k: f64) {
         self.fill_linear(edge, t_k, t_k);

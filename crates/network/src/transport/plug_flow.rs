@@ -40,6 +40,17 @@ pub(super) fn relation(
     }
 }
 
+/// Mean temperature of the content in the steady state, K.
+pub(super) fn steady_mean_k(
+    pipe: &PlugFlowPipe,
+    m_flow_kg_s: f64,
+    t_in_k: f64,
+    surroundings_k: f64,
+) -> f64 {
+    let transit_s = pipe.content_kg / m_flow_kg_s.abs();
+    surroundings_k + (t_in_k - surroundings_k) * mean_decay(transit_s / pipe.loss_time_constant_s)
+}
+
 /// Outlet temperature in the steady state as a function of the inlet temperature.
 pub(super) fn steady_relation(
     pipe: &PlugFlowPipe,
