@@ -9,6 +9,7 @@ use anergy_network::elements::check_valve::CheckValveParams;
 use anergy_network::elements::flow_limiter::FlowLimiterParams;
 use anergy_network::elements::flow_source::FlowSourceParams;
 use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
+use anergy_network::elements::heat_meter::HeatMeterParams;
 use anergy_network::elements::overflow_valve::OverflowValveParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::pressure_source::PressureSourceParams;
@@ -35,6 +36,7 @@ pub fn nature(params: &ElementParams) -> Nature {
         | ElementParams::Valve(_)
         | ElementParams::BallValve(_)
         | ElementParams::Resistance(_)
+        | ElementParams::HeatMeter(_)
         | ElementParams::HeatExchanger(_) => Nature::Symmetric,
         ElementParams::Pump(_)
         | ElementParams::CheckValve(_)
@@ -58,6 +60,7 @@ pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
         "overflow_valve" => overflow_valve().prop_map(ElementParams::OverflowValve).boxed(),
         "flow_limiter" => flow_limiter().prop_map(ElementParams::FlowLimiter).boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
+        "heat_meter" => heat_meter().prop_map(ElementParams::HeatMeter).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
         "heat_exchanger" => heat_exchanger().prop_map(ElementParams::HeatExchanger).boxed(),
         "flow_source" => flow_source().prop_map(ElementParams::FlowSource).boxed(),
@@ -349,6 +352,18 @@ fn flow_limiter() -> impl Strategy<Value = FlowLimiterParams> {
             kvs_m3_h,
             m_flow_set_kg_s: share * at_a_tenth_of_a_bar_kg_s(kvs_m3_h),
             rise_time_s,
+            delta_m,
+        },
+    )
+}
+
+fn heat_meter() -> impl Strategy<Value = HeatMeterParams> {
+    (logarithmic(1.0, 1e6), logarithmic(1e-3, 100.0), logarithmic(1e-3, 1.0)).prop_map(
+        |(dp_nominal_pa, m_flow_nominal_kg_s, delta_m)| HeatMeterParams {
+            return_node: Some("n0".into()),
+            supply_node: None,
+            m_flow_nominal_kg_s,
+            dp_nominal_pa,
             delta_m,
         },
     )

@@ -5,6 +5,7 @@ pub mod check_valve;
 pub mod flow_limiter;
 pub mod flow_source;
 pub mod heat_exchanger;
+pub mod heat_meter;
 pub mod overflow_valve;
 pub mod pipe;
 pub mod pressure_source;
@@ -27,6 +28,7 @@ anergy_core::registry! {
         CheckValve("check_valve", check_valve::CheckValve, check_valve::CheckValveParams),
         Resistance("resistance", resistance::Resistance, resistance::ResistanceParams),
         HeatExchanger("heat_exchanger", heat_exchanger::HeatExchanger, heat_exchanger::HeatExchangerParams),
+        HeatMeter("heat_meter", heat_meter::HeatMeter, heat_meter::HeatMeterParams),
         FlowSource("flow_source", flow_source::FlowSource, flow_source::FlowSourceParams),
         PressureSource("pressure_source", pressure_source::PressureSource, pressure_source::PressureSourceParams),
     }

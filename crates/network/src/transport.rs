@@ -154,6 +154,12 @@ impl Transport {
         Ok(())
     }
 
+    /// Mean temperature of the water that left a node in the last step (or leaves it in the steady state),
+    /// K.
+    pub fn mean_k(&self, node: usize) -> f64 {
+        self.t_mean_k[node]
+    }
+
     /// Settles all temperatures to the steady state of the present flows and requests: pipes get
     /// their steady profile, volumes their inlet temperature. One pass; units whose outlet depends
     /// on what they get need several.

@@ -1,6 +1,7 @@
 //! From names to ids: a model becomes a plan, or all its problems are reported.
 
 mod commands;
+mod meters;
 mod network;
 mod prescribed;
 mod pressure;
@@ -12,7 +13,7 @@ use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
 use crate::plan::{Plan, PlannedUnit, WorstPoint};
-use crate::state::State;
+use crate::state::{Reading, State};
 use crate::temperatures::SURROUNDINGS;
 use crate::wording::refused;
 use anergy_core::clock::Time;
@@ -177,7 +178,9 @@ impl Builder<'_> {
         }
         let vessels = self.vessels(&network, &node_ids);
         let pressure_watches = self.pressure_watches(&network, &node_ids);
+        let meters = self.meters(&node_ids);
         let mut initial = self.initial_state(&network, &units, &stations, &signals);
+        initial.meters = vec![Reading::default(); meters.len()];
         initial.vessels = vec![VesselState::default(); vessels.len()];
         initial.crossed = vec![false; pressure_watches.len()];
         let mut plan = Plan {
@@ -191,6 +194,7 @@ impl Builder<'_> {
             worst_points,
             prescriptions,
             vessels,
+            meters,
             pressure_watches,
             drivers,
             signals,
@@ -308,6 +312,7 @@ impl Builder<'_> {
             unit_outputs: vec![0.0; units.last().map_or(0, |unit| unit.outputs.end)],
             stations: vec![StationState::default(); stations.len()],
             station_heat_j: vec![0.0; stations.len()],
+            meters: Vec::new(),
             vessels: Vec::new(),
             crossed: Vec::new(),
             controller_states: Vec::new(),

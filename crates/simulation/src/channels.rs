@@ -16,6 +16,12 @@ pub enum Source {
     NodeTemperature(usize),
     /// Water that a boundary brings in, kg/s.
     NodeExchange(usize),
+    /// Heat that a meter shows, W.
+    MeterHeat(usize),
+    /// Heat that a meter has counted, J.
+    MeterEnergy(usize),
+    /// Water that a meter has counted, m3.
+    MeterVolume(usize),
     /// Gas in an expansion vessel, m3.
     VesselGas(usize),
     /// Flow of an edge, kg/s.
@@ -100,6 +106,12 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     }
     for (i, name) in plan.edge_names.iter().enumerate() {
         edge_channels(&mut list, plan, i, name);
+    }
+    for (i, meter) in plan.meters.iter().enumerate() {
+        let name = &plan.edge_names[meter.edge];
+        list.add(ChannelGroup::Edges, name, "q_flow_w", "W", Source::MeterHeat(i));
+        list.add(ChannelGroup::Edges, name, "heat_j", "J", Source::MeterEnergy(i));
+        list.add(ChannelGroup::Edges, name, "volume_m3", "m3", Source::MeterVolume(i));
     }
     for (i, station) in plan.stations.iter().enumerate() {
         let name = &plan.station_names[i];
@@ -223,6 +235,9 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::NodePressure(i) => network.p_pa[i],
         Source::NodeTemperature(i) => network.t_node_k[i],
         Source::NodeExchange(i) => network.exchange_kg_s[i],
+        Source::MeterHeat(i) => state.meters[i].q_flow_w,
+        Source::MeterEnergy(i) => state.meters[i].heat_j,
+        Source::MeterVolume(i) => state.meters[i].volume_m3,
         Source::VesselGas(i) => state.vessels[i].gas_m3,
         Source::EdgeFlow(i) => network.m_flow_kg_s[i],
         Source::EdgePressure(i) => network.dp_pa(&plan.network, i),

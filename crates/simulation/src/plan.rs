@@ -65,6 +65,15 @@ pub(crate) struct NodeInputs {
     pub t_k: Option<SignalId>,
 }
 
+/// A heat meter: its edge and its second sensor.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlannedMeter {
+    pub edge: usize,
+    pub other_node: usize,
+    /// Whether the flow sensor is in the supply and the other one in the return.
+    pub in_supply: bool,
+}
+
 /// A limit of the pressures of some nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct PressureWatch {
@@ -97,6 +106,7 @@ pub struct Plan {
     pub(crate) worst_points: Vec<WorstPoint>,
     pub(crate) prescriptions: Vec<PlannedPrescription>,
     pub(crate) vessels: Vec<Vessel>,
+    pub(crate) meters: Vec<PlannedMeter>,
     pub(crate) pressure_watches: Vec<PressureWatch>,
     pub(crate) drivers: Vec<Driver>,
     pub(crate) signals: SignalTable,

@@ -1,6 +1,7 @@
 //! A simulation: an immutable plan, a state that is plain data, and the step.
 
 mod access;
+mod meters;
 mod pressure;
 mod words;
 
@@ -97,6 +98,7 @@ impl Simulation {
         self.advance_units(dt_s);
         self.watch_stations(end, dt_s);
         self.book(dt_s);
+        self.read_meters(dt_s);
         self.watch_pressures(end);
         self.hold_pressures(dt_s);
         self.state.time = end;
@@ -342,6 +344,7 @@ impl Simulation {
             .settle(&self.plan.network, &mut self.state.network)
             .map_err(|source| RunError::Singular { time: "steady state".into(), source })?;
         self.advance_units(0.0);
+        self.read_meters(0.0);
         self.hold_pressures(0.0);
         Ok(report)
     }

@@ -7,6 +7,17 @@ use anergy_network::interface::StationState;
 use anergy_network::state::NetworkState;
 use serde::{Deserialize, Serialize};
 
+/// What a heat meter shows.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Reading {
+    /// Heat, W (mean of the step).
+    pub q_flow_w: f64,
+    /// Heat since the start, J.
+    pub heat_j: f64,
+    /// Water since the start, m3.
+    pub volume_m3: f64,
+}
+
 /// Everything that changes during a run: plain data. A clone, or its bytes, is a snapshot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -19,6 +30,7 @@ pub struct State {
     pub(crate) unit_outputs: Vec<f64>,
     pub(crate) stations: Vec<StationState>,
     pub(crate) station_heat_j: Vec<f64>,
+    pub(crate) meters: Vec<Reading>,
     pub(crate) vessels: Vec<VesselState>,
     /// Whether each watched limit is crossed.
     pub(crate) crossed: Vec<bool>,

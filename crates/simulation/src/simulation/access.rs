@@ -87,7 +87,11 @@ impl Simulation {
             && own.network.parcels.fits(&other.network.parcels)
             && own.unit_states.len() == other.unit_states.len()
             && own.controller_states.len() == other.controller_states.len()
-            && own.stations.len() == other.stations.len();
+            && own.network.density_kg_m3.len() == other.network.density_kg_m3.len()
+            && own.stations.len() == other.stations.len()
+            && own.meters.len() == other.meters.len()
+            && own.vessels.len() == other.vessels.len()
+            && own.crossed.len() == other.crossed.len();
         if !fits {
             return Err(RunError::Snapshot { problem: "it is of another model".into() });
         }

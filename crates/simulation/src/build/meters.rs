@@ -1,0 +1,38 @@
+//! Heat meters of a model and their second sensors.
+
+use super::Builder;
+use crate::diagnostic::did_you_mean;
+use crate::plan::PlannedMeter;
+use crate::wording::refused;
+use anergy_network::elements::ElementParams;
+use std::collections::HashMap;
+
+impl Builder<'_> {
+    /// The heat meters, in the order of their edges.
+    pub(super) fn meters(&mut self, node_ids: &HashMap<&str, usize>) -> Vec<PlannedMeter> {
+        let mut meters = Vec::new();
+        for (edge, spec) in self.model.edges.iter().enumerate() {
+            let ElementParams::HeatMeter(params) = &spec.params else { continue };
+            let what = format!("edge \"{}\" (heat_meter)", spec.id);
+            let (field, name) = match (&params.return_node, &params.supply_node) {
+                (Some(name), None) => ("return_node", name),
+                (None, Some(name)) => ("supply_node", name),
+                (given, _) => {
+                    let field = given.is_some().then_some("supply_node");
+                    let message = "give either return_node (flow sensor in the supply) or supply_node \
+                                   (flow sensor in the return)";
+                    self.problems.push(refused(&what, &spec.place, field, message));
+                    continue;
+                }
+            };
+            let Some(&other_node) = node_ids.get(name.as_str()) else {
+                let hint = did_you_mean(name, node_ids.keys().copied());
+                let message = format!("{what}: {field} names no node: \"{name}\"");
+                self.report(message, spec.place.of(field), hint);
+                continue;
+            };
+            meters.push(PlannedMeter { edge, other_node, in_supply: field == "return_node" });
+        }
+        meters
+    }
+}
