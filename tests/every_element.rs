@@ -248,8 +248,14 @@ fn solved(nodes: usize, parts: &[Part]) -> Result<(Vec<f64>, Vec<f64>), String> 
     }
     let mut all = vec![node(NodeKind::PressureReference)];
     all.resize(nodes, node(NodeKind::Junction));
-    let network =
-        Network { medium, gravity_m_s2: GRAVITY_M_S2, nodes: all, edges, ports: Vec::new(), prescriptions: Vec::new() };
+    let network = Network {
+        medium,
+        gravity_m_s2: GRAVITY_M_S2,
+        nodes: all,
+        edges,
+        ports: Vec::new(),
+        prescriptions: Vec::new(),
+    };
     if let Some(problem) = network.problems().first() {
         return Err(format!("{problem:?}"));
     }

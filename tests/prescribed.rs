@@ -174,7 +174,7 @@ fn a_schedule_passes_a_limit_and_a_snapshot_continues_bit_for_bit() {
     let snapshot = simulation.snapshot();
     simulation.advance_to(Time(200 * NS_PER_S), step).unwrap();
     let first = simulation.state().clone();
-    let kinds: Vec<String> = simulation.take_events().map(|event| event.kind.into()).collect();
+    let kinds: Vec<String> = simulation.take_events().map(|event| event.kind).collect();
     assert_eq!(kinds, ["unreached", "reached"]);
     simulation.restore(&snapshot).unwrap();
     simulation.advance_to(Time(200 * NS_PER_S), step).unwrap();

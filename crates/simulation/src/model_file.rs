@@ -5,8 +5,8 @@
 
 mod duration;
 pub mod expand;
-mod plant;
 mod nodes;
+mod plant;
 pub mod read;
 pub mod schema;
 pub mod series;
@@ -14,10 +14,10 @@ mod tables;
 mod three_way_valve;
 
 pub use duration::Duration;
+pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use tables::NetworkEntry;
 pub use three_way_valve::{ThreeWayMode, ThreeWayValveEntry};
-pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 
 use anergy_core::clock::Time;
 use schemars::JsonSchema;

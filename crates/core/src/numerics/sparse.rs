@@ -53,13 +53,6 @@ impl Columns {
         })
     }
 
-    /// Elimination of these conductances in the given order.
-    fn elimination(&self, place: &[u32]) -> Elimination {
-        let entries: Vec<(u32, u32)> =
-            self.entries().map(|(i, j, _)| (place[i], place[j])).collect();
-        Elimination::analyze(self.n, entries.into_iter())
-    }
-
     /// Writes the matrix of these conductances, in the same pattern with the diagonal first in each
     /// column.
     fn laplacian(&self, matrix: &mut Self) {
@@ -89,29 +82,91 @@ pub struct ConductanceSolver {
     method: Method,
 }
 
-/// Recorded updates where the matrix fills in little, faer's blocked factorisation where it does not.
+/// How the potentials are found.
 enum Method {
-    Recorded {
-        elimination: Elimination,
-        /// Place of each unknown in the order of elimination.
-        place: Vec<u32>,
-        ordered: Vec<f64>,
-    },
-    Blocked {
-        /// Conductances; the diagonal holds those to given potentials.
-        lower: Columns,
-        /// The matrix of them.
-        matrix: Columns,
-        symbolic: cholesky::SymbolicCholesky<u32>,
-        factor: Vec<f64>,
-        scratch: MemBuffer,
-        /// Place of each unknown in the order of elimination.
-        place: Vec<u32>,
-        /// For conductances that are too many decades apart; made when first needed.
-        careful: Option<Box<Elimination>>,
-        /// Whether the last factorisation is the careful one.
-        use_careful: bool,
-    },
+    /// By recorded updates, where there is little fill-in.
+    Recorded(Ordered),
+    /// By blocked factorisation, where there is much.
+    Blocked(Box<Blocked>),
+}
+
+/// Elimination in an order of its own.
+struct Ordered {
+    elimination: Elimination,
+    /// Place of each unknown in the order of elimination.
+    place: Vec<u32>,
+    work: Vec<f64>,
+}
+
+impl Ordered {
+    fn slot(&self, i: usize, j: usize) -> Option<usize> {
+        let (i, j) = (self.place[i] as usize, self.place[j] as usize);
+        self.elimination.slot(i.max(j), i.min(j))
+    }
+
+    fn solve_in_place(&mut self, x: &mut [f64]) {
+        for (&place, &x) in self.place.iter().zip(&*x) {
+            self.work[place as usize] = x;
+        }
+        self.elimination.solve_in_place(&mut self.work);
+        for (&place, x) in self.place.iter().zip(x) {
+            *x = self.work[place as usize];
+        }
+    }
+}
+
+/// Cholesky factorisation by faer, and an elimination for what it cannot factorise.
+struct Blocked {
+    /// Conductances; the diagonal holds those to given potentials.
+    lower: Columns,
+    /// The matrix of them.
+    matrix: Columns,
+    symbolic: cholesky::SymbolicCholesky<u32>,
+    factor: Vec<f64>,
+    scratch: MemBuffer,
+    /// For conductances that are too many decades apart.
+    careful: Ordered,
+    /// Whether the last factorisation is the careful one.
+    use_careful: bool,
+}
+
+impl Blocked {
+    fn factor(&mut self) -> bool {
+        self.lower.laplacian(&mut self.matrix);
+        let done = self.symbolic.factorize_numeric_llt(
+            &mut self.factor,
+            self.matrix.matrix(),
+            Side::Lower,
+            Default::default(),
+            Par::Seq,
+            MemStack::new(&mut self.scratch),
+            Default::default(),
+        );
+        self.use_careful = done.is_err();
+        if !self.use_careful {
+            return true;
+        }
+        self.careful.elimination.values_mut().fill(0.0);
+        for (i, j, value) in self.lower.entries() {
+            if let Some(slot) = self.careful.slot(i, j) {
+                self.careful.elimination.values_mut()[slot] = value;
+            }
+        }
+        self.careful.elimination.factor()
+    }
+
+    fn solve_in_place(&mut self, x: &mut [f64]) {
+        if self.use_careful {
+            return self.careful.solve_in_place(x);
+        }
+        let n = x.len();
+        cholesky::LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(x, n, 1),
+            Par::Seq,
+            MemStack::new(&mut self.scratch),
+        );
+    }
 }
 
 impl ConductanceSolver {
@@ -134,11 +189,10 @@ impl ConductanceSolver {
         )
         .map_err(|_| failed)?;
         let elimination = Elimination::analyze(n, pairs.iter().map(|&(i, j)| (place[i], place[j])));
-        if elimination.is_recorded() {
-            return Ok(Self {
-                n,
-                method: Method::Recorded { elimination, place, ordered: vec![0.0; n] },
-            });
+        let recorded = elimination.is_recorded();
+        let ordered = Ordered { elimination, place, work: vec![0.0; n] };
+        if recorded {
+            return Ok(Self { n, method: Method::Recorded(ordered) });
         }
         let diagonal = (0..n).map(|i| (i, i));
         let lower =
@@ -146,7 +200,7 @@ impl ConductanceSolver {
         let symbolic = cholesky::factorize_symbolic_cholesky(
             lower.symbolic(),
             Side::Lower,
-            cholesky::SymmetricOrdering::Custom(PermRef::new_checked(&forward, &place, n)),
+            cholesky::SymmetricOrdering::Custom(PermRef::new_checked(&forward, &ordered.place, n)),
             cholesky::CholeskySymbolicParams::default(),
         )
         .map_err(|_| failed)?;
@@ -155,31 +209,24 @@ impl ConductanceSolver {
                 .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
                 .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq)),
         );
-        let factor = vec![0.0; symbolic.len_val()];
-        Ok(Self {
-            n,
-            method: Method::Blocked {
-                matrix: lower.clone(),
-                lower,
-                symbolic,
-                factor,
-                scratch,
-                place,
-                careful: None,
-                use_careful: false,
-            },
-        })
+        let blocked = Blocked {
+            matrix: lower.clone(),
+            lower,
+            factor: vec![0.0; symbolic.len_val()],
+            symbolic,
+            scratch,
+            careful: ordered,
+            use_careful: false,
+        };
+        Ok(Self { n, method: Method::Blocked(Box::new(blocked)) })
     }
 
     /// Where the conductance between i and j is kept in [`Self::values_mut`], for `i = j` that to given
     /// potentials; `None` outside the pattern.
     pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
         match &self.method {
-            Method::Recorded { elimination, place, .. } => {
-                let (i, j) = (place[i] as usize, place[j] as usize);
-                elimination.slot(i.max(j), i.min(j))
-            }
-            Method::Blocked { lower, .. } => lower.slot(i.max(j), i.min(j)),
+            Method::Recorded(ordered) => ordered.slot(i, j),
+            Method::Blocked(blocked) => blocked.lower.slot(i.max(j), i.min(j)),
         }
     }
 
@@ -187,8 +234,8 @@ impl ConductanceSolver {
     #[inline]
     pub fn values_mut(&mut self) -> &mut [f64] {
         match &mut self.method {
-            Method::Recorded { elimination, .. } => elimination.values_mut(),
-            Method::Blocked { lower, .. } => &mut lower.value,
+            Method::Recorded(ordered) => ordered.elimination.values_mut(),
+            Method::Blocked(blocked) => &mut blocked.lower.value,
         }
     }
 
@@ -207,85 +254,18 @@ impl ConductanceSolver {
     /// # Errors
     /// [`FactorError::Singular`] when a part has no conductance to a given potential.
     pub fn factor(&mut self) -> Result<(), FactorError> {
-        let singular = FactorError::Singular { unknowns: self.n };
-        match &mut self.method {
-            Method::Recorded { elimination, .. } => {
-                if elimination.factor() {
-                    Ok(())
-                } else {
-                    Err(singular)
-                }
-            }
-            Method::Blocked {
-                lower,
-                matrix,
-                symbolic,
-                factor,
-                scratch,
-                place,
-                careful,
-                use_careful,
-            } => {
-                lower.laplacian(matrix);
-                let done = symbolic
-                    .factorize_numeric_llt(
-                        factor,
-                        matrix.matrix(),
-                        Side::Lower,
-                        Default::default(),
-                        Par::Seq,
-                        MemStack::new(scratch),
-                        Default::default(),
-                    )
-                    .is_ok();
-                *use_careful = !done;
-                if done {
-                    return Ok(());
-                }
-                let careful = careful.get_or_insert_with(|| Box::new(lower.elimination(place)));
-                careful.values_mut().fill(0.0);
-                for (i, j, value) in lower.entries() {
-                    let (i, j) = (place[i] as usize, place[j] as usize);
-                    if let Some(slot) = careful.slot(i.max(j), i.min(j)) {
-                        careful.values_mut()[slot] = value;
-                    }
-                }
-                if careful.factor() { Ok(()) } else { Err(singular) }
-            }
-        }
+        let done = match &mut self.method {
+            Method::Recorded(ordered) => ordered.elimination.factor(),
+            Method::Blocked(blocked) => blocked.factor(),
+        };
+        if done { Ok(()) } else { Err(FactorError::Singular { unknowns: self.n }) }
     }
 
     /// Solves with the last factorisation: right-hand side in, solution out.
     pub fn solve_in_place(&mut self, x: &mut [f64]) {
-        let n = self.n;
         match &mut self.method {
-            Method::Recorded { elimination, place, ordered } => {
-                for (&place, &x) in place.iter().zip(&*x) {
-                    ordered[place as usize] = x;
-                }
-                elimination.solve_in_place(ordered);
-                for (&place, x) in place.iter().zip(x) {
-                    *x = ordered[place as usize];
-                }
-            }
-            Method::Blocked { place, careful: Some(careful), use_careful: true, .. } => {
-                let mut ordered = vec![0.0; n];
-                for (&place, &x) in place.iter().zip(&*x) {
-                    ordered[place as usize] = x;
-                }
-                careful.solve_in_place(&mut ordered);
-                for (&place, x) in place.iter().zip(x) {
-                    *x = ordered[place as usize];
-                }
-            }
-            Method::Blocked { symbolic, factor, scratch, .. } => {
-                cholesky::LltRef::new(symbolic, factor).solve_in_place_with_conj(
-                    Conj::No,
-                    MatMut::from_column_major_slice_mut(x, n, 1),
-                    Par::Seq,
-                    MemStack::new(scratch),
-                );
-            }
+            Method::Recorded(ordered) => ordered.solve_in_place(x),
+            Method::Blocked(blocked) => blocked.solve_in_place(x),
         }
     }
 }
@@ -406,7 +386,7 @@ mod tests {
         let chain_pairs: Vec<_> = (1..900).map(|i| (i - 1, i)).collect();
         for (pairs, recorded) in [(chain_pairs, true), (grid_pairs, false)] {
             let mut solver = ConductanceSolver::analyze(900, &pairs).unwrap();
-            assert_eq!(matches!(solver.method, Method::Recorded { .. }), recorded);
+            assert_eq!(matches!(solver.method, Method::Recorded(_)), recorded);
             let x: Vec<f64> = (0..900).map(|i| f64::from(i).sin()).collect();
             let mut inflow: Vec<f64> = x.iter().map(|x| 1e-3 * x).collect();
             for i in 0..900 {
