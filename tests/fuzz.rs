@@ -72,6 +72,15 @@ const FRAGMENTS: &[&str] = &[
     "[[site]]\nid = \"sf5\"\nelevation_m = 12\n[[trench]]\nfrom = \"sf4\"\nto = \"sf5\"\n\
      length_m = 30\npipe = \"dn20\"\n[[station]]\nsite = \"sf5\"\nkind = \"bidirectional\"\n\
      [[unit]]\nsite = \"sf5\"\nkind = \"heat_load\"\nload_kw = 3\nreturn_degc = 30\n",
+    "[[site]]\nid = \"works\"\n[[trench]]\nfrom = \"works\"\nto = \"sf2\"\nlength_m = 30\n\
+     pipe = \"dn20\"\n[[station]]\nsite = \"works\"\nkind = \"plant\"\ndp_bar = 0.2\n\
+     dp_at = \"worst_consumer\"\noutdoor_curve_degc = [[-12, 90], [15, 70]]\n\
+     circulation_pump = { head_max_bar = 1, free_flow_l_min = 60 }\n",
+    "[[three_way_valve]]\nid = \"mixer\"\na = \"sf1.hot\"\nb = \"sf1.cold\"\nab = \"sf2.hot\"\n\
+     kvs_m3_h = 1.0\nopening = 0.5\n",
+    "[station_type.house]\nkind = \"consumer\"\nstub = { pipe = \"dn20\" }\nunit = { kind = \"heat_load\", \
+     load_kw = 2, return_degc = 30 }\n[[station]]\nsite = \"sf2\"\nname = \"flat\"\ntype = \"house\"\n",
+    "[network]\nnodes = \"nodes.csv\"\npipes = 7\nlines = [\"hot\"]\n",
     "[[series]]\nfile = \"nowhere.csv\"\ncolumn = \"x\"\nsignal = \"ground.temperature_k\"\n",
 ];
 

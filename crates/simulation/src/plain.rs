@@ -170,7 +170,14 @@ fn collect(
         let given = place.fields.iter().find(|written| written.si == *field);
         let source = match given {
             Some(written) if written.span.is_some() && written.span == place.span => {
-                "the published station of the laboratory"
+                let others = [", circulation_pump", ", generator"];
+                if others.iter().any(|part| place.entry.ends_with(part))
+                    || place.entry.starts_with("three_way_valve")
+                {
+                    "the composite's default"
+                } else {
+                    "the published station of the laboratory"
+                }
             }
             Some(_) => continue,
             None => "the component's default",
