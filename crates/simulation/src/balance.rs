@@ -31,7 +31,7 @@ pub struct Balances {
     pub hydraulic_j: f64,
     /// Hydraulic work dissipated in the other elements; this heat is left out.
     pub dissipated_j: f64,
-    /// Heat that warms all water, also what entered, by [`RESOLUTION_K`].
+    /// Heat that warms all water, and what passed in the largest flow, by [`RESOLUTION_K`].
     pub resolution_j: f64,
     /// Hydraulic work of [`RESOLUTION_W`].
     pub hydraulic_resolution_j: f64,
@@ -44,7 +44,7 @@ impl Balances {
         let network = simulation.plan().network();
         let stored = state.network.stored_j(network);
         let capacity_j_k = state.network.capacity_j_k(network)
-            + state.entered_kg * network.medium.heat_capacity_j_kg_k;
+            + state.passed_kg * network.medium.heat_capacity_j_kg_k;
         Self {
             mass_residual_kg_s: state.largest_mass_residual_kg_s,
             units_j: state.units_j,

@@ -323,7 +323,7 @@ impl Builder<'_> {
             pump_heat_j: 0.0,
             loss_j: 0.0,
             boundary_j: 0.0,
-            entered_kg: 0.0,
+            passed_kg: 0.0,
             pump_hydraulic_j: 0.0,
             dissipated_j: 0.0,
             initial_stored_j: 0.0,

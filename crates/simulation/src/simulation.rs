@@ -296,6 +296,8 @@ impl Simulation {
         for (heat, station) in state.station_heat_j.iter_mut().zip(&plan.stations) {
             *heat += network.q_flow_w[station.edge.index()] * dt_s;
         }
+        let largest = network.m_flow_kg_s.iter().fold(0.0_f64, |largest, m| largest.max(m.abs()));
+        state.passed_kg += largest * dt_s;
         let density = plan.network.medium.density_kg_m3;
         for (i, edge) in plan.network.edges.iter().enumerate() {
             let work_j = network.m_flow_kg_s[i] * network.dp_pa(&plan.network, i) / density * dt_s;
@@ -310,7 +312,6 @@ impl Simulation {
         }
         for (i, node) in plan.network.nodes.iter().enumerate() {
             if node.kind != NodeKind::Junction {
-                state.entered_kg += network.exchange_kg_s[i].max(0.0) * dt_s;
                 state.pump_hydraulic_j +=
                     network.exchange_kg_s[i] * network.p_pa[i] / density * dt_s;
             }

@@ -42,7 +42,8 @@ pub struct State {
     pub(crate) pump_heat_j: f64,
     pub(crate) loss_j: f64,
     pub(crate) boundary_j: f64,
-    pub(crate) entered_kg: f64,
+    /// Water that the largest flow has moved.
+    pub(crate) passed_kg: f64,
     pub(crate) pump_hydraulic_j: f64,
     pub(crate) dissipated_j: f64,
     pub(crate) initial_stored_j: f64,
