@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use anergy_core::clock::Time;
 use anergy_core::ids::NodeId;
 use anergy_core::medium::Medium;
 use anergy_network::elements::pump::{PumpMode, PumpParams};
@@ -11,7 +12,11 @@ use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::{Edge, GRAVITY_M_S2, Network, Node, NodeKind};
 use anergy_network::hydraulics::HydraulicSolver;
 use anergy_network::state::NetworkState;
-use anergy_tests::Random;
+use anergy_simulation::build::build;
+use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
+use anergy_simulation::steady;
+use anergy_tests::{Random, workspace};
 
 /// Iterations of a cold solve.
 const COLD_ITERATIONS: u32 = 30;
@@ -131,4 +136,80 @@ fn houses_on_a_line_with_their_own_pumps_and_a_feed_pump() {
     assert!(held > 500 && full > 100, "{held} held, {full} at full speed");
     // Kinked laws cost iterations, never the solution.
     assert!(most <= 120 && total <= 200 * 40, "at most {most}, {total} in all");
+}
+
+/// A pump that holds `set_pa` from 0.3 kg/s on and half of it at zero flow, against `c m|m|` and a valve
+/// characteristic `opening`; `more` further entries.
+fn proportional(set_pa: f64, c: f64, more: &str) -> Model {
+    let text = format!(
+        "format = 1\n[pressure_reference]\nnode = \"a\"\n[[node]]\nid = \"a\"\n[[node]]\nid = \"b\"\n\
+         [[edge]]\nid = \"pump\"\nkind = \"pump\"\nfrom = \"a\"\nto = \"b\"\nhead_max_pa = 40221.0\n\
+         free_flow_l_min = 55.33\nmode = \"proportional_head\"\nhead_pa = {set_pa:?}\n\
+         m_flow_design_kg_s = 0.3\n\
+         [[edge]]\nid = \"r\"\nkind = \"resistance\"\nfrom = \"b\"\nto = \"a\"\ndp_nominal_pa = {c:?}\n\
+         m_flow_nominal_kg_s = 1.0\ndelta_m = 0.01\n{more}"
+    );
+    Model::from_toml(&text, &workspace()).unwrap_or_else(|e| panic!("{}", e.render(&text)))
+}
+
+#[test]
+fn a_proportional_head_is_held_in_solve_and_run() {
+    // 20 kPa (1/2 + m/0.6) = c m^2: with c = 5e5 m = 0.5/(...): 5e5 m^2 - 33333.3 m - 10000 = 0, m =
+    // (33333.3 + sqrt(33333.3^2 + 2e10))/1e6 = 0.178634 kg/s, 15954.5 Pa. With c = 1e5 the design flow is
+    // passed: 20 kPa, sqrt(0.2) = 0.447214 kg/s. 38 kPa against 1e5 at 0.45 kg/s and more is too much for
+    // full speed: 40221/(1e5 + 4.72972e4) = 0.273060, 0.52255 kg/s.
+    let cases = [
+        (20_000.0, 5e5, 0.178_634, 15_954.5),
+        (20_000.0, 1e5, 0.447_214, 20_000.0),
+        (38_000.0, 1e5, 0.522_55, 27_306.0),
+    ];
+    for (set_pa, c, m, head_pa) in cases {
+        let model = proportional(set_pa, c, "");
+        let steady = steady::solve(&model).unwrap();
+        let pump = steady.edge("pump").unwrap();
+        assert!((pump.m_flow_kg_s / m - 1.0).abs() < 2e-3, "{pump:?}");
+        assert!((-pump.dp_pa / head_pa - 1.0).abs() < 3e-3, "{pump:?}");
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        let value =
+            |simulation: &Simulation, name: &str| simulation.get(simulation.channel(name).unwrap());
+        // A run starts there, and stays.
+        for end_s in [0.0, 60.0] {
+            let second = Time::from_s(1.0).unwrap();
+            simulation.advance_to(Time::from_s(end_s).unwrap(), second).unwrap();
+            let found = value(&simulation, "pump.m_flow_kg_s");
+            assert!((found / pump.m_flow_kg_s - 1.0).abs() < 1e-5, "{found} at {end_s} s");
+        }
+        let speed = value(&simulation, "pump.speed");
+        assert_eq!(speed > 0.999, set_pa > 30_000.0, "{speed}");
+    }
+}
+
+#[test]
+fn a_proportional_head_follows_a_valve_with_its_rise_time() {
+    // The valve closes from 100 to 20 % at 60 s: the head falls with the flow, within 1 % of its line from
+    // 30 s later on. Then the pump is set off and on.
+    let valve = "[[node]]\nid = \"c\"\n[[edge]]\nid = \"v\"\nkind = \"valve\"\nfrom = \"b\"\nto = \"c\"\n\
+                 kvs_m3_h = 2.0\ncharacteristic = \"linear\"\nopening = 1.0\n[[edge]]\nid = \"s\"\n\
+                 kind = \"resistance\"\nfrom = \"c\"\nto = \"a\"\ndp_nominal_pa = 2e4\n\
+                 m_flow_nominal_kg_s = 1.0\n[[schedule]]\nsignal = \"v.opening\"\npoints = [[0, 1.0], [60, 0.2]]\n\
+                 [[schedule]]\nsignal = \"pump.head_pa\"\npoints = [[0, 20000.0], [180, 0.0], [240, 20000.0]]\n";
+    let model = proportional(20_000.0, 1e8, valve);
+    let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+    let mut flows = Vec::new();
+    for second in 1..=300 {
+        let end = Time::from_s(f64::from(second)).unwrap();
+        simulation.advance_to(end, Time::from_s(1.0).unwrap()).unwrap();
+        let value = |name: &str| simulation.get(simulation.channel(name).unwrap());
+        let (m, head) = (value("pump.m_flow_kg_s"), -value("pump.dp_pa"));
+        let settled = (30..60).contains(&second) || (120..180).contains(&second) || second > 290;
+        let line = 20_000.0 * (0.5 + 0.5 * (m / 0.3).min(1.0));
+        if settled {
+            assert!((head / line - 1.0).abs() < 0.01, "{head} Pa of {line} at {second} s");
+        }
+        if (220..240).contains(&second) {
+            assert!(m.abs() < 1e-3, "{m} kg/s when off");
+        }
+        flows.push(m);
+    }
+    assert!(flows[50] > 0.2 && flows[150] < 0.1, "{} {}", flows[50], flows[150]);
 }

@@ -108,6 +108,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "speed_min",
     "table_opening",
     "table_phi",
+    "zero_flow_share",
     "zeta",
     // Exponents, empirical coefficients and those of mixed units.
     "exponent",

@@ -135,7 +135,9 @@ fn pump() -> impl Strategy<Value = PumpParams> {
         match mode {
             PumpMode::Head => {
                 let head_pa = still.head_max_pa.map(|head| share * head);
-                PumpParams { head_pa, ..still }
+                // Some of them follow the flow.
+                let mode = if share > 0.6 { PumpMode::ProportionalHead } else { mode };
+                PumpParams { head_pa, mode, ..still }
             }
             _ => {
                 // Whatever the density of the medium.

@@ -76,7 +76,7 @@ impl Station {
         let element = &network.edges[pump.index()].element;
         let speed = state.position[pump.index()];
         let limit = element.actuator().map_or(1.0, |actuator| actuator.max);
-        let target = element.target_position(command);
+        let target = element.target_at_flow(command, state.m_flow_kg_s[pump.index()]);
         let flow = self.m_flow_kg_s(state);
         let was_blocked = memory.blocked;
         if memory.blocked {

@@ -131,16 +131,19 @@ impl NetworkState {
         }
     }
 
-    /// Moves the actuator of an edge towards `command` over `dt_s`: two equal first-order lags with
-    /// `T = t_rise sqrt(sqrt 2 - 1)/5`, exact for a constant command. Infinite `dt_s` settles it.
+    /// Moves the actuator of an edge towards what `command` asks for at the last flow, over `dt_s`: two
+    /// equal first-order lags with `T = t_rise sqrt(sqrt 2 - 1)/5`, exact for a constant command. Infinite
+    /// `dt_s` settles it.
     pub fn advance_actuator(&mut self, network: &Network, edge: usize, command: f64, dt_s: f64) {
         let element = &network.edges[edge].element;
         let Some(actuator) = element.actuator() else {
             return;
         };
-        let target = element.target_position(command);
+        let target = element.target_at_flow(command, self.m_flow_kg_s[edge]);
         let (x1, x2) = (self.actuator_lag[edge], self.position[edge]);
-        if x1 == target && x2 == target {
+        let kept =
+            if element.follows_flow() && target > 0.0 { FOLLOWED * actuator.max } else { 0.0 };
+        if (x1 - target).abs() <= kept && (x2 - target).abs() <= kept {
             return;
         }
         let lag_s = RISE_TO_LAG * actuator.rise_time_s;
@@ -240,6 +243,9 @@ impl NetworkState {
 
 /// Lag of each of the two actuator filters over the rise time: `sqrt(sqrt 2 - 1)/5`.
 const RISE_TO_LAG: f64 = 0.128_718_850_581_116_7;
+/// An actuator that follows a flow stays while its target is nearer than this share of its range, so that
+/// the two do not chase each other over rounding errors.
+const FOLLOWED: f64 = 1e-7;
 /// An actuator this close to its target has arrived.
 const SETTLED: f64 = 1e-9;
 

@@ -119,6 +119,16 @@ pub trait TwoPort {
         self.actuator().map_or(command, |actuator| command.clamp(actuator.min, actuator.max))
     }
 
+    /// Whether what a command asks for depends on the flow.
+    fn follows_flow(&self) -> bool {
+        false
+    }
+
+    /// The position that a command asks for at a flow.
+    fn target_at_flow(&self, command: f64, _m_flow_kg_s: f64) -> f64 {
+        self.target_position(command)
+    }
+
     /// Electric power drawn, W; `None` for elements without a motor.
     fn electric_power_w(&self, _m_flow_kg_s: f64, _state: &EdgeState) -> Option<f64> {
         None

@@ -1,6 +1,7 @@
 //! A simulation: an immutable plan, a state that is plain data, and the step.
 
 mod access;
+mod actuators;
 mod meters;
 mod pressure;
 mod words;
@@ -76,6 +77,7 @@ impl Simulation {
         self.apply_inputs();
         self.fill_vessels();
         self.solve_hydraulics()?;
+        self.settle_heads()?;
         self.watch_pressures(Time::ZERO);
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
         Ok(())
@@ -206,25 +208,6 @@ impl Simulation {
             self.state.network.surroundings_k.iter_mut().zip(&self.plan.surroundings)
         {
             *around = signals[id.index()];
-        }
-    }
-
-    /// Actuators follow their commands; an infinite `dt_s` settles them. The extraction valve of a
-    /// station waits for its pump.
-    fn move_actuators(&mut self, dt_s: f64) {
-        let (plan, network) = (&self.plan, &mut self.state.network);
-        for (edge, command) in plan.commands.iter().enumerate() {
-            if let (Some(command), None) = (command, plan.station_of_valve[edge]) {
-                let command = self.state.signals[command.index()];
-                network.advance_actuator(&plan.network, edge, command, dt_s);
-            }
-        }
-        for (edge, command) in plan.commands.iter().enumerate() {
-            if let (Some(command), Some(station)) = (command, plan.station_of_valve[edge]) {
-                let open = plan.stations[station].valve_may_open(network);
-                let command = if open { self.state.signals[command.index()] } else { 0.0 };
-                network.advance_actuator(&plan.network, edge, command, dt_s);
-            }
         }
     }
 

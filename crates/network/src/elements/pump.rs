@@ -10,8 +10,8 @@
 //! `heat_to_water = f` the water takes up the heat `max(f P - V dp, 0)` in the pump (without the standby
 //! power). The work `V dp` itself is not given back where it dissipates: friction warms no water.
 //!
-//! With `mode = "flow"` or `"head"` the pump chooses the speed that holds its set value, up to the full
-//! one and down to standstill: a median of three rising laws (`mode.rs`).
+//! With `mode = "flow"`, `"head"` or `"proportional_head"` the pump chooses the speed that holds its set
+//! value, up to the full one and down to standstill: a median of three rising laws (`mode.rs`).
 //!
 //! **Assumptions** at rest the impeller is an orifice of the curve's curvature. Where a table or
 //! polynomial does not fall, the nearest falling curve is taken and said so, up to 10 % of H0.
@@ -36,6 +36,7 @@ use anergy_core::linear::Linear;
 use anergy_core::medium::Medium;
 use curve::HeadCurve;
 use efficiency::Efficiency;
+use mode::Proportional;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -71,9 +72,17 @@ pub struct PumpParams {
     /// Mass flow commanded while nothing else drives it, kg/s, with `mode = "flow"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub m_flow_set_kg_s: Option<f64>,
-    /// Head commanded while nothing else drives it, Pa, with `mode = "head"`.
+    /// Head commanded while nothing else drives it, Pa, with `mode = "head"`; with
+    /// `mode = "proportional_head"` that from the design flow on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub head_pa: Option<f64>,
+    /// Flow from which on a proportional head is `head_pa`, kg/s. Absent: where the curve at full speed has
+    /// this head.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub m_flow_design_kg_s: Option<f64>,
+    /// Share of `head_pa` that a proportional head has at zero flow. Absent: half of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_flow_share: Option<f64>,
     /// Relative speed commanded while nothing else drives it.
     #[serde(default)]
     pub speed: f64,
@@ -143,6 +152,8 @@ impl Default for PumpParams {
             mode: PumpMode::default(),
             m_flow_set_kg_s: None,
             head_pa: None,
+            m_flow_design_kg_s: None,
+            zero_flow_share: None,
             speed: 0.0,
             initial_speed: 0.0,
             speed_min: 0.0,
@@ -164,6 +175,7 @@ impl Default for PumpParams {
 pub struct Pump {
     curve: HeadCurve,
     mode: PumpMode,
+    proportional: Option<Proportional>,
     efficiency: Efficiency,
     heat_to_water: Option<f64>,
     standby_w: f64,
@@ -180,8 +192,18 @@ impl PumpParams {
     pub fn build(&self, medium: &Medium) -> Result<Pump, ElementError> {
         let curve = self.head_curve(medium.density_kg_m3)?;
         let speed_max = positive("speed_max", self.speed_max)?;
+        let proportional = self.proportional(&curve, speed_max, medium.density_kg_m3)?;
         let actuator = self.actuator(&curve, speed_max)?;
+        let actuator = match proportional {
+            // As at zero flow, until a flow is known.
+            Some(line) => Actuator {
+                initial_position: line.head_pa(actuator.initial_command, 0.0),
+                ..actuator
+            },
+            None => actuator,
+        };
         Ok(Pump {
+            proportional,
             curve,
             mode: self.mode,
             efficiency: self.overall_efficiency()?,
@@ -220,19 +242,21 @@ impl PumpParams {
         let (position, unit, max) = match self.mode {
             PumpMode::Speed => ("speed", "", speed_max),
             PumpMode::Flow => ("m_flow_set_kg_s", "kg_s", speed_max * curve.m_free_kg_s),
-            PumpMode::Head => ("head_pa", "pa", speed_max * speed_max * curve.head_max_pa),
+            PumpMode::Head | PumpMode::ProportionalHead => {
+                ("head_pa", "pa", speed_max * speed_max * curve.head_max_pa)
+            }
         };
         let foreign = [
             (
                 "speed, initial_speed and speed_min",
                 speeds.iter().any(|&s| s != 0.0),
-                PumpMode::Speed,
+                &[PumpMode::Speed][..],
             ),
-            ("m_flow_set_kg_s", self.m_flow_set_kg_s.is_some(), PumpMode::Flow),
-            ("head_pa", self.head_pa.is_some(), PumpMode::Head),
+            ("m_flow_set_kg_s", self.m_flow_set_kg_s.is_some(), &[PumpMode::Flow]),
+            ("head_pa", self.head_pa.is_some(), &[PumpMode::Head, PumpMode::ProportionalHead]),
         ];
         if let Some((fields, ..)) =
-            foreign.iter().find(|(_, given, mode)| *given && *mode != self.mode)
+            foreign.iter().find(|(_, given, modes)| *given && !modes.contains(&self.mode))
         {
             return Err(ElementError::Fields {
                 problem: format!("{fields} given, but by its mode this pump holds {position}"),
@@ -244,7 +268,9 @@ impl PumpParams {
             PumpMode::Flow => {
                 within("m_flow_set_kg_s", self.m_flow_set_kg_s.unwrap_or(0.0), max, requirement)?
             }
-            PumpMode::Head => within("head_pa", self.head_pa.unwrap_or(0.0), max, requirement)?,
+            PumpMode::Head | PumpMode::ProportionalHead => {
+                within("head_pa", self.head_pa.unwrap_or(0.0), max, requirement)?
+            }
         };
         let starts_at_its_command = self.mode != PumpMode::Speed;
         Ok(Actuator {
@@ -280,7 +306,7 @@ impl Pump {
     pub fn speed(&self, m_flow_kg_s: f64, state: &EdgeState) -> f64 {
         match self.mode {
             PumpMode::Speed => state.position,
-            PumpMode::Flow | PumpMode::Head => {
+            PumpMode::Flow | PumpMode::Head | PumpMode::ProportionalHead => {
                 let dp_pa = self.loss(m_flow_kg_s, state).value;
                 self.speed_at(m_flow_kg_s, dp_pa, state.density_kg_m3)
             }
@@ -318,6 +344,15 @@ impl TwoPort for Pump {
     fn target_position(&self, command: f64) -> f64 {
         let target = command.clamp(0.0, self.actuator.max);
         if self.mode == PumpMode::Speed && target < self.speed_min { 0.0 } else { target }
+    }
+
+    fn follows_flow(&self) -> bool {
+        self.proportional.is_some()
+    }
+
+    fn target_at_flow(&self, command: f64, m: f64) -> f64 {
+        let target = self.target_position(command);
+        self.proportional.map_or(target, |line| line.head_pa(target, m))
     }
 
     fn note(&self) -> Option<&str> {

@@ -169,6 +169,20 @@ impl HeadCurve {
         affine.scaled(weight) + as_quadratic.scaled(1.0 - weight)
     }
 
+    /// Flow at which the pump has a head at a speed, kg/s: at least a hundredth of the free flow.
+    pub(super) fn flow_at(&self, head_pa: f64, speed: f64, density: f64) -> f64 {
+        let (mut low, mut high) = (0.0, 2.0 * speed * self.m_free_kg_s);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if -self.loss(middle, speed, density).value > head_pa {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low.max(0.01 * self.m_free_kg_s)
+    }
+
     /// The speed up to `speed_max` at which `p_a - p_b` is `dp_pa`, or the nearest one.
     pub(super) fn speed_at(&self, m: f64, dp_pa: f64, density: f64, speed_max: f64) -> f64 {
         let head_at_rest_pa = -self.loss(m, 0.0, density).value;

@@ -8,12 +8,21 @@
 //! `S = k (m - m_set)` with `k = u_max^2 H0/(1e-4 m_set)`. Head: `S = -h_set + k m` with a droop of 1e-3
 //! of the head at the nominal flow, so that two such pumps in parallel share the flow.
 //!
+//! A proportional head is a set head that rises with the flow, `h_set (s + (1 - s) m/m_design)` up to the
+//! design flow and constant beyond ([`Proportional`]). Its line falls where `phi` must rise, so it is no law:
+//! the held head is an actuator position that follows this target at the last flow, with the rise time of the
+//! pump, and in the steady state in rounds, which approach it from one side and never pass it as long as the
+//! network's own curve is the steeper one. Of such pumps in parallel one takes all flow; one pump can be
+//! proportional beside pumps of other modes.
+//!
 //! **Numerics** maximum and minimum are rounded within 1e-3 of the head at zero flow. A set value of
 //! zero is a pump at rest; up to 1e-3 of the nominal flow or head the available speed rises linearly. The
 //! corners are sharper than a Newton step can foresee: several such pumps that change their side together
 //! take one or two iterations each.
 
+use super::PumpParams;
 use super::curve::HeadCurve;
+use crate::two_port::{ElementError, positive, ratio};
 use anergy_core::linear::Linear;
 use anergy_core::numerics::regularize::{smooth_max, smooth_min};
 use schemars::JsonSchema;
@@ -43,6 +52,8 @@ pub enum PumpMode {
     Flow,
     /// The head, within what the curve at full speed allows.
     Head,
+    /// A head that rises with the flow up to the set one, within what the curve at full speed allows.
+    ProportionalHead,
 }
 
 impl PumpMode {
@@ -63,7 +74,7 @@ impl PumpMode {
                 let slope = head_max_pa / (FLOW_BAND * position.max(LEAST_FLOW * m_nominal));
                 (Linear::new(slope * (m - position), slope), position / m_nominal)
             }
-            Self::Head => {
+            Self::Head | Self::ProportionalHead => {
                 let slope = DROOP * position.max(LEAST_HEAD * head_max_pa) / m_nominal;
                 (Linear::new(slope * m - position, slope), position / head_max_pa)
             }
@@ -76,5 +87,52 @@ impl PumpMode {
         let rounding = ROUNDING * available * available * head_max_pa;
         let full = curve.loss(m, available * speed_max, density);
         smooth_max(full, smooth_min(held, rest, rounding), rounding)
+    }
+}
+
+/// How the set head of a pump follows the flow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Proportional {
+    /// Flow from which on the set head holds, kg/s.
+    pub m_design_kg_s: f64,
+    /// Share of it at zero flow.
+    pub zero_flow_share: f64,
+}
+
+impl Proportional {
+    /// The head to hold at a flow, Pa.
+    pub(super) fn head_pa(&self, set_pa: f64, m: f64) -> f64 {
+        let share = (m / self.m_design_kg_s).clamp(0.0, 1.0);
+        set_pa * (self.zero_flow_share + (1.0 - self.zero_flow_share) * share)
+    }
+}
+
+impl PumpParams {
+    /// How the set head follows the flow, with that mode.
+    pub(super) fn proportional(
+        &self,
+        curve: &HeadCurve,
+        speed_max: f64,
+        density_kg_m3: f64,
+    ) -> Result<Option<Proportional>, ElementError> {
+        if self.mode != PumpMode::ProportionalHead {
+            return match (self.m_flow_design_kg_s, self.zero_flow_share) {
+                (None, None) => Ok(None),
+                _ => Err(ElementError::Fields {
+                    problem: "m_flow_design_kg_s and zero_flow_share belong to \
+                              mode = \"proportional_head\""
+                        .into(),
+                }),
+            };
+        }
+        let m_design_kg_s = match self.m_flow_design_kg_s {
+            Some(m) => positive("m_flow_design_kg_s", m)?,
+            None => {
+                let head_pa = self.head_pa.unwrap_or(0.5 * curve.head_max_pa);
+                curve.flow_at(head_pa, speed_max, density_kg_m3)
+            }
+        };
+        let zero_flow_share = ratio("zero_flow_share", self.zero_flow_share.unwrap_or(0.5))?;
+        Ok(Some(Proportional { m_design_kg_s, zero_flow_share }))
     }
 }
