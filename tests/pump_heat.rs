@@ -175,6 +175,15 @@ fn the_heat_of_several_pumps_closes_the_balance() {
 }
 
 #[test]
+fn losses_that_cannot_get_out_have_no_steady_state() {
+    let tight = RING.replace("insulation_resistance_k_m_w = 3.0", "");
+    let tight = tight.replace("insulation_resistance_k_m_w = 2.0", "");
+    let error = steady::solve(&model(&tight)).unwrap_err().to_string();
+    assert!(error.starts_with("at steady state: the water at"), "{error}");
+    assert!(steady::solve(&model(RING)).is_ok());
+}
+
+#[test]
 fn where_nothing_is_moved_the_balances_close_to_rounding() {
     // One temperature everywhere, with and without flow; before this the error was 0/0.
     let cold = RING.replace("initial_degc = 35.0", "initial_degc = 10.0");

@@ -20,6 +20,8 @@ const SETTLED_K: f64 = 1e-9;
 const SETTLED_KG_S: f64 = 1e-11;
 /// Water that a vessel may take up in the steady state, kg/s, as what a pressure reference may exchange.
 const VESSEL_KG_S: f64 = 1e-6;
+/// Water boils above this, K.
+const HOTTEST_K: f64 = 373.15;
 const MAX_ROUNDS: u32 = 20_000;
 const MAX_CONTROL_ROUNDS: u32 = 60;
 /// Actuator change for the difference quotient, relative to its range where that is finite.
@@ -110,7 +112,21 @@ pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> 
     simulation.state_mut().network.invalidate_hydraulics();
     let last = simulation.solve_hydraulics()?;
     check_vessels(simulation)?;
+    check_boiling(simulation)?;
     Ok(HydraulicReport { iterations: first.iterations, ..last })
+}
+
+/// Heat that cannot get out has no steady state below boiling.
+fn check_boiling(simulation: &Simulation) -> Result<(), RunError> {
+    let (plan, network) = (simulation.plan(), &simulation.state().network);
+    match network.t_node_k.iter().position(|t_k| *t_k > HOTTEST_K) {
+        None => Ok(()),
+        Some(node) => Err(RunError::Temperature {
+            time: "steady state".into(),
+            component: plan.node_names[node].clone(),
+            t_degc: network.t_node_k[node] - 273.15,
+        }),
+    }
 }
 
 /// What enters a vessel all the time has no steady state.
