@@ -135,7 +135,7 @@ def heat_grid(consumers: int, folder: str, arguments: argparse.Namespace) -> dic
         # One flow-controlled consumer.
         middle = pp.create_junction(net, pn_bar=5, tfluid_k=353.15, name=f"{i} m")
         pp.create_flow_control(net, here[0], middle, controlled_mdot_kg_per_s=chance.uniform(0.05, 0.2))
-        pp.create_heat_exchanger(net, middle, here[1], qext_w=5000.0)
+        pp.create_heat_exchanger(net, middle, here[1], qext_w=5000.0, inner_diameter_mm=50)
         ends.append(here)
     pp.pipeflow(net, mode="hydraulics", friction_model="swamee-jain", use_numba=True)
     times = []

@@ -18,6 +18,7 @@ mod error;
 mod ideal;
 mod position;
 mod prescribed;
+mod reconsider;
 
 use crate::graph::{Edge, Network};
 use crate::state::NetworkState;
@@ -182,7 +183,11 @@ impl HydraulicSolver {
             let overshoot = if iteration <= HASTY_ITERATIONS { OVERSHOOT_SHARE } else { 0.0 };
             self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
             let trial = self.take_step(network, state, mass_balanced, overshoot)?;
-            mass_balanced = true;
+            mass_balanced =
+                iteration > reconsider::ITERATIONS || !self.reconsider(network, state)?;
+            if !mass_balanced {
+                continue;
+            }
             let largest_p_pa = self.system.largest_p_pa();
             if trial.correction <= 1.0
                 && trial.residual_pa <= RESIDUAL_PA + RESIDUAL_RELATIVE * largest_p_pa
