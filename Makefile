@@ -40,7 +40,8 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python examples/town/run.py
 
 validate: ## Slow cases, peers, large random sets
-	PROPTEST_CASES=2000 cargo test --release -p anergy-tests --test every_element --test random_networks
+	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 cargo test --release -p anergy-tests \
+		--test every_element --test random_networks --test robustness -- --nocapture
 
 .venv-peers/.installed:
 	$(PYTHON) -m venv .venv-peers
