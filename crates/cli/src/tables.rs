@@ -93,6 +93,9 @@ pub fn print_key_results(summary: &Value) {
         })
         .collect();
     print_table(&["component", "result", "value", "unit"], &rows);
+    if let Some(others @ 1..) = summary["stations_beyond_key_results"].as_u64() {
+        line!("the stations with the most heat; {others} others are in summary.json");
+    }
     for balance in summary["balances"].as_array().unwrap_or(&empty) {
         if let (Some("heat from units" | "pump work"), Some(error)) =
             (balance["label"].as_str(), balance["relative_error"].as_f64())

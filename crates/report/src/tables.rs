@@ -44,7 +44,14 @@ pub fn key_numbers(summary: &Value) -> String {
         )
     };
     let rows: String = entries.iter().map(row).collect();
-    table("key-numbers", "numbers", &head(&["Quantity", "Component", "#Value", "Unit"]), &rows)
+    let mut out =
+        table("key-numbers", "numbers", &head(&["Quantity", "Component", "#Value", "Unit"]), &rows);
+    if let Some(others @ 1..) = summary.get("stations_beyond_key_results").and_then(Value::as_u64) {
+        out += &format!(
+            "<p>The stations with the most heat; {others} others are in summary.json.</p>"
+        );
+    }
+    out
 }
 
 /// Balances of the summary.

@@ -82,17 +82,21 @@ fn relative(difference: f64, terms: &[f64], resolution: f64) -> f64 {
     if scale > 0.0 { difference.abs() / scale } else { difference.abs() }
 }
 
+/// Stations among the key results: of more, those with the most heat.
+const KEY_STATIONS: usize = 10;
+
 /// Key results, balances and statistics of a run as JSON: `summary.json` and the report's tables.
 pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
     let (plan, state) = (simulation.plan(), simulation.state());
     let balances = Balances::of(simulation);
     let density = plan.network.medium.density_kg_m3;
-    let mut key_results = Vec::new();
-    let mut add = |label: &str, value: f64, unit: &str, component: &str| {
-        key_results
-            .push(json!({ "label": label, "value": value, "unit": unit, "component": component }));
-    };
+    let result = |label: &str, value: f64, unit: &str, component: &str| json!({ "label": label, "value": value, "unit": unit, "component": component });
+    let mut results: Vec<(f64, Vec<Value>)> = Vec::new();
     for (i, name) in plan.station_names.iter().enumerate() {
+        let mut entries = Vec::new();
+        let mut add = |label: &str, value: f64, unit: &str, component: &str| {
+            entries.push(result(label, value, unit, component));
+        };
         let flow = plan.stations[i].m_flow_kg_s(&state.network);
         add("flow at the end (feed-in positive)", l_min(flow, density), "l/min", name);
         let heat = channels::value(plan, state, channels::Source::StationHeat(i));
@@ -101,9 +105,19 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
         if plan.stations[i].requested_m_flow_kg_s.is_some() {
             add("time blocked", state.stations[i].blocked_s, "s", name);
         }
+        results.push((state.station_heat_j[i].abs(), entries));
     }
-    add("heat lost", balances.loss_j / 3.6e6, "kWh", "network");
-    add("electricity of the pumps", balances.electric_j / 3.6e6, "kWh", "network");
+    let stations: Vec<Value> = results.iter().flat_map(|(_, entries)| entries.clone()).collect();
+    let others = results.len().saturating_sub(KEY_STATIONS);
+    if others > 0 {
+        results.sort_by(|a, b| b.0.total_cmp(&a.0));
+        results.truncate(KEY_STATIONS);
+    }
+    let mut key_results: Vec<Value> =
+        results.into_iter().flat_map(|(_, entries)| entries).collect();
+    key_results.push(result("heat lost", balances.loss_j / 3.6e6, "kWh", "network"));
+    let electric = balances.electric_j / 3.6e6;
+    key_results.push(result("electricity of the pumps", electric, "kWh", "network"));
     let balance = |label: &str, value: f64, unit: &str, error: f64| json!({ "label": label, "value": value, "unit": unit, "relative_error": error });
     let heat = balances.heat_error();
     json!({
@@ -111,6 +125,8 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
         "interrupted": interrupted,
         "end_s": state.time.as_s(),
         "key_results": key_results,
+        "stations_beyond_key_results": others,
+        "stations": stations,
         "balances": [
             balance("heat from units", balances.units_j / 3.6e6, "kWh", heat),
             balance("heat from pumps", balances.pump_heat_j / 3.6e6, "kWh", heat),
