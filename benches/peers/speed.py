@@ -131,7 +131,7 @@ def heat_grid(consumers: int, folder: str, arguments: argparse.Namespace) -> dic
         here = [pp.create_junction(net, pn_bar=5, tfluid_k=353.15, name=f"{i} {s}") for s in "sr"]
         length = chance.uniform(0.02, 0.08)
         for a, b in ((parent[0], here[0]), (here[1], parent[1])):
-            pp.create_pipe_from_parameters(net, a, b, length_km=length, diameter_m=0.25, k_mm=0.05)
+            pp.create_pipe_from_parameters(net, a, b, length_km=length, inner_diameter_mm=250, k_mm=0.05)
         # One flow-controlled consumer.
         middle = pp.create_junction(net, pn_bar=5, tfluid_k=353.15, name=f"{i} m")
         pp.create_flow_control(net, here[0], middle, controlled_mdot_kg_per_s=chance.uniform(0.05, 0.2))
