@@ -27,25 +27,33 @@ fn main() {
     let plan = simulation.plan().clone();
     let network = plan.network();
     // What is given at t = 0, with the start flows of a first solve.
-    let mut rest = NetworkState::new(network, model.run.initial_k);
+    let mut state = NetworkState::new(network, model.run.initial_k);
     let given = simulation.network_state();
-    rest.given_p_pa.copy_from_slice(&given.given_p_pa);
-    rest.given_m_flow_kg_s.copy_from_slice(&given.given_m_flow_kg_s);
-    rest.position.copy_from_slice(&given.position);
-    rest.prescribed.clone_from(&given.prescribed);
+    state.given_p_pa.copy_from_slice(&given.given_p_pa);
+    state.given_m_flow_kg_s.copy_from_slice(&given.given_m_flow_kg_s);
+    state.position.copy_from_slice(&given.position);
+    state.prescribed.clone_from(&given.prescribed);
 
-    let mut state = rest.clone();
+    let (start_m_kg_s, start_p_pa) = (state.m_flow_kg_s.clone(), state.p_pa.clone());
+    let (demands_kg_s, positions) = (state.given_m_flow_kg_s.clone(), state.position.clone());
+    let cold_start = |state: &mut NetworkState| {
+        state.m_flow_kg_s.copy_from_slice(&start_m_kg_s);
+        state.p_pa.copy_from_slice(&start_p_pa);
+        state.position.copy_from_slice(&positions);
+        state.prescribed.clone_from(&given.prescribed);
+        state.invalidate_hydraulics();
+    };
     let mut solver = HydraulicSolver::new(network).unwrap();
     let report = solver.solve(network, &mut state).unwrap();
     let cold = repeat(seconds, || {
-        let mut state = rest.clone();
+        cold_start(&mut state);
         let start = Instant::now();
         let mut solver = HydraulicSolver::new(network).unwrap();
         solver.solve(network, &mut state).unwrap();
         start.elapsed()
     });
     let from_rest = repeat(seconds, || {
-        state.clone_from(&rest);
+        cold_start(&mut state);
         let start = Instant::now();
         solver.solve(network, &mut state).unwrap();
         start.elapsed()
@@ -53,19 +61,19 @@ fn main() {
     let kinds = model.edges.iter().map(|edge| edge.params.kind());
     let pumps: Vec<usize> =
         kinds.enumerate().filter(|(_, kind)| *kind == "pump").map(|(i, _)| i).collect();
-    let demands = rest.given_m_flow_kg_s.iter().any(|m| *m != 0.0);
+    let demands = demands_kg_s.iter().any(|m| *m != 0.0);
     let (mut warm_iterations, mut solves, mut low) = (0, 0_u32, false);
     let warm = repeat(seconds, || {
         low = !low;
         if demands {
             let share = if low { 0.95 } else { 1.0 };
-            for (m, full) in state.given_m_flow_kg_s.iter_mut().zip(&rest.given_m_flow_kg_s) {
+            for (m, full) in state.given_m_flow_kg_s.iter_mut().zip(&demands_kg_s) {
                 *m = share * full;
             }
         } else {
             let share = if low { 0.98 } else { 1.0 };
             for &pump in &pumps {
-                state.position[pump] = share * rest.position[pump];
+                state.position[pump] = share * positions[pump];
             }
         }
         state.invalidate_hydraulics();

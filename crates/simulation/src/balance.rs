@@ -31,9 +31,9 @@ pub struct Balances {
     pub hydraulic_j: f64,
     /// Hydraulic work dissipated in the other elements; this heat is left out.
     pub dissipated_j: f64,
-    /// Heat that warms all water, and what passed in the largest flow, by [`RESOLUTION_K`].
+    /// Heat that warms all water, and what passed in the largest flow, by `RESOLUTION_K`.
     pub resolution_j: f64,
-    /// Hydraulic work of [`RESOLUTION_W`].
+    /// Hydraulic work of `RESOLUTION_W`.
     pub hydraulic_resolution_j: f64,
 }
 

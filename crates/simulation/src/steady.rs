@@ -62,7 +62,7 @@ pub struct Steady {
     pub nodes: Vec<SteadyNode>,
     /// Edges in the order of the model.
     pub edges: Vec<SteadyEdge>,
-    /// Newton iterations of the first (cold) hydraulic solve.
+    /// Newton iterations of all hydraulic solves since the simulation began.
     pub iterations: u32,
     /// Largest pressure residual of an edge, Pa.
     pub residual_pa: f64,
@@ -101,9 +101,7 @@ pub fn solve(model: &Model) -> Result<Steady, RunError> {
 /// # Errors
 /// [`RunError::NotSettled`] names what still moves.
 pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> {
-    // Count the iterations of a cold solve at the settled actuators.
-    simulation.state_mut().network.invalidate_hydraulics();
-    let first = simulation.settle_once()?;
+    simulation.settle_once()?;
     if simulation.plan().controllers.is_empty() {
         settle_temperatures(simulation)?;
     } else {
@@ -113,7 +111,8 @@ pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> 
     let last = simulation.solve_hydraulics()?;
     check_vessels(simulation)?;
     check_boiling(simulation)?;
-    Ok(HydraulicReport { iterations: first.iterations, ..last })
+    let iterations = u32::try_from(simulation.state().iterations).unwrap_or(u32::MAX);
+    Ok(HydraulicReport { iterations, ..last })
 }
 
 /// Heat that cannot get out has no steady state below boiling.

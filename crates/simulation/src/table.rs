@@ -1,7 +1,7 @@
 //! Places in the tables of a model: rows and cells of CSV files, beside the bytes of the model text.
 //!
 //! A span is a range of bytes of the model text. Cells of tables are numbered on behind its end, so that
-//! everything that keeps a span keeps the place of a cell as well; [`Tables::located`] turns such a span
+//! everything that keeps a span keeps the place of a cell as well; `Tables::located` turns such a span
 //! back into file, line and column.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
