@@ -9,7 +9,7 @@
 //! of the circuit per kelvin); everything else has the constant density of the model. Water that comes
 //! back from the vessel has the temperature of its node. **Validity** below the precharge pressure the
 //! vessel is empty: the gas law goes on, the event `vessel_empty` says so. The gas keeps at least
-//! [`LEAST_GAS`] of the volume.
+//! `LEAST_GAS` of the volume.
 //!
 //! **Sources** `kell1975` (density of water).
 
