@@ -194,6 +194,10 @@ fn what_is_not_well_posed_is_named() {
     let passive =
         LOOP.to_owned() + &prescribed("return.m_flow_kg_s", 8.0, "kg_min", "supply.speed");
     assert!(problems(&passive).contains("no actuator"), "{}", problems(&passive));
+    let source = LOOP.to_owned()
+        + "[[edge]]\nid = \"source\"\nkind = \"flow_source\"\nfrom = \"a\"\nto = \"b\"\nm_flow_kg_s = 0.1\n"
+        + &prescribed("b.p_pa", 2.0, "bar", "source.m_flow_set_kg_s");
+    assert!(problems(&source).contains("no actuator"), "{}", problems(&source));
     let driven = LOOP.to_owned()
         + &prescribed("return.m_flow_kg_s", 8.0, "kg_min", "pump.speed")
         + "[[schedule]]\nsignal = \"pump.speed\"\npoints = [[0, 1]]\n";

@@ -8,9 +8,9 @@
 //! **Assumptions** no error of the meter, no delay between its sensors. **Sources** `wetter2014`; default
 //! loss: the limit of EN 1434 at the permanent flow.
 
-use crate::two_port::{Characteristic, EdgeState, ElementError, TwoPort, positive};
+use super::resistance::{Resistance, ResistanceParams};
+use crate::two_port::{Characteristic, EdgeState, ElementError, TwoPort};
 use anergy_core::medium::Medium;
-use anergy_core::numerics::regularize::quadratic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -54,36 +54,33 @@ impl Default for HeatMeterParams {
     }
 }
 
-/// A heat meter ready to be solved.
+/// A heat meter ready to be solved: hydraulically a resistance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HeatMeter {
-    coefficient: f64,
-    m_flow_nominal_kg_s: f64,
-    m_turbulent_kg_s: f64,
-}
+pub struct HeatMeter(Resistance);
 
 impl HeatMeterParams {
     /// The runtime meter.
     ///
     /// # Errors
     /// Names the field that is out of range.
-    pub fn build(&self, _medium: &Medium) -> Result<HeatMeter, ElementError> {
-        let m = positive("m_flow_nominal_kg_s", self.m_flow_nominal_kg_s)?;
-        Ok(HeatMeter {
-            coefficient: positive("dp_nominal_pa", self.dp_nominal_pa)? / (m * m),
-            m_flow_nominal_kg_s: m,
-            m_turbulent_kg_s: positive("delta_m", self.delta_m)? * m,
-        })
+    pub fn build(&self, medium: &Medium) -> Result<HeatMeter, ElementError> {
+        let resistance = ResistanceParams {
+            dp_nominal_pa: Some(self.dp_nominal_pa),
+            m_flow_nominal_kg_s: Some(self.m_flow_nominal_kg_s),
+            kv_m3_h: None,
+            delta_m: self.delta_m,
+        };
+        Ok(HeatMeter(resistance.build(medium)?))
     }
 }
 
 impl TwoPort for HeatMeter {
-    fn characteristic(&self, m: f64, _state: &EdgeState) -> Characteristic {
-        Characteristic::PressureLoss(quadratic(m, self.coefficient, self.m_turbulent_kg_s))
+    fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
+        self.0.characteristic(m, state)
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {
-        self.m_flow_nominal_kg_s
+        self.0.m_flow_nominal_kg_s()
     }
 }
 

@@ -79,8 +79,10 @@ impl Builder<'_> {
             ElementParams::Valve(valve) => valve.command_of.is_none(),
             _ => true,
         };
+        // The position of a free edge is found on its law, between limits: no ideal source.
         let command = |i: usize| {
-            edges[i].element.actuator().filter(|_| alone(i)).map(|actuator| actuator.command)
+            let actuator = edges[i].element.actuator()?;
+            (alone(i) && actuator.max.is_finite()).then_some(actuator.command)
         };
         let (component, word) = spec.entry.free.rsplit_once('.').unwrap_or(("", ""));
         let found = edge_ids.get(component).copied().filter(|&i| command(i) == Some(word));
