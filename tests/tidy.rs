@@ -97,6 +97,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "kappa",
     "leakage",
     "loss_factor",
+    "heat_loss_factor",
     "open",
     "opening",
     "initial_opening",

@@ -114,6 +114,7 @@ fn pipe() -> impl Strategy<Value = PipeParams> {
                 insulation_resistance_k_m_w: heat.0,
                 surroundings_k: heat.1,
                 initial_k: heat.2,
+                ..PipeParams::default()
             }
         },
     )

@@ -37,7 +37,8 @@ use std::sync::Arc;
 /// All problems of the model: doubled and dangling names, impossible values, signals with two drivers
 /// or none, circuits without pressure reference.
 pub fn build(model: &Model) -> Result<Arc<Plan>, Diagnostics> {
-    let mut builder = Builder { model, problems: Vec::new() };
+    let effective = model.with_effects().map_err(|problems| model.tables.located(problems.0))?;
+    let mut builder = Builder { model: &effective, problems: Vec::new() };
     builder.check_names();
     let plan = builder.plan();
     match plan {

@@ -1,5 +1,6 @@
 //! The fields that an entry can have, and every unit they can be written in.
 
+use crate::effects::EffectParams;
 use anergy_control::controllers::ControllerParams;
 use anergy_core::units::{Unit, alternatives, split_suffix};
 use anergy_network::elements::ElementParams;
@@ -58,7 +59,7 @@ macro_rules! registered {
     )+};
 }
 
-registered!(ElementParams, EquipmentParams, ControllerParams);
+registered!(ElementParams, EquipmentParams, ControllerParams, EffectParams);
 
 /// Making a schema takes longer than reading an entry with it, so each is made once in a process.
 static KNOWN: Mutex<BTreeMap<(TypeId, &'static str), Arc<Grammar>>> = Mutex::new(BTreeMap::new());

@@ -99,6 +99,7 @@ impl Model {
         }
         let kept_edge = |id: &str| wanted.contains(id);
         model.units.retain(|unit| kept_edge(&unit.port));
+        model.effects.retain(|effect| kept_edge(&effect.component));
         model.interfaces.retain(|interface| {
             kept_edge(&interface.edge)
                 && interface.pump.as_deref().is_none_or(kept_edge)

@@ -40,6 +40,8 @@ pub mod channels;
 pub mod diagnostic;
 pub mod document;
 pub mod drivers;
+pub mod effect;
+pub mod effects;
 pub mod error;
 pub mod fields;
 pub mod grammar;

@@ -4,6 +4,7 @@
 //! `isolate` cuts, and what `build` turns into a simulation.
 
 use crate::diagnostic::Diagnostics;
+use crate::effect::EffectSpec;
 use crate::model_file::{
     InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry, RunEntry,
     WorstPointEntry,
@@ -240,6 +241,8 @@ pub struct Model {
     pub drivers: Vec<DriverSpec>,
     /// Pressure references.
     pub references: Vec<ReferenceSpec>,
+    /// Effects, not yet at work.
+    pub effects: Vec<EffectSpec>,
 }
 
 impl Model {

@@ -2,7 +2,7 @@
 //!
 //! An overlay names a component and what to change; its neutral value leaves the model identical.
 
-use crate::model::{EdgeSpec, Model, Place};
+use crate::model::{DriverSpec, EdgeSpec, Model, Place};
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
@@ -59,6 +59,11 @@ pub enum Change {
         /// Factor, positive.
         loss_factor: f64,
     },
+    /// Drives a signal over time, instead of what drives it now.
+    Drive {
+        /// The signal and its values.
+        driver: DriverSpec,
+    },
 }
 
 /// A change that cannot be made.
@@ -105,7 +110,7 @@ impl Model {
         Ok(model)
     }
 
-    fn apply(&mut self, change: &Change) -> Result<(), OverlayError> {
+    pub(crate) fn apply(&mut self, change: &Change) -> Result<(), OverlayError> {
         match change {
             Change::Set { parameter, value } => {
                 self.change_parameter(parameter, |_| Some(value.clone()))
@@ -139,6 +144,11 @@ impl Model {
                     });
                 }
                 self.edge_mut(edge)?.loss_factor *= loss_factor;
+                Ok(())
+            }
+            Change::Drive { driver } => {
+                self.drivers.retain(|other| other.signal != driver.signal);
+                self.drivers.push(driver.clone());
                 Ok(())
             }
         }

@@ -118,6 +118,17 @@ impl Model {
                 })
                 .collect(),
         );
+        section(
+            "effect",
+            self.effects
+                .iter()
+                .map(|spec| {
+                    let head = json!({ "id": spec.params.kind(), "component": spec.component });
+                    let told = Value::Object(spec.provenance.clone());
+                    joined(joined(head, spec.params.to_value()), told)
+                })
+                .collect(),
+        );
         to_toml(&file)
     }
 
@@ -136,6 +147,11 @@ impl Model {
             let params = &controller.params;
             let schema = anergy_control::controllers::ControllerParams::schema(params.kind());
             collect(&mut defaults, &controller.id, &params.to_value(), schema, &controller.place);
+        }
+        for effect in &self.effects {
+            let schema = crate::effects::EffectParams::schema(effect.params.kind());
+            let name = format!("effect {} of {}", effect.params.kind(), effect.component);
+            collect(&mut defaults, &name, &effect.params.to_value(), schema, &effect.place);
         }
         defaults
     }

@@ -115,7 +115,7 @@ pub struct Plan {
     pub(crate) node_inputs: Vec<NodeInputs>,
     pub(crate) ground: SignalId,
     /// Signal with the temperature around each edge.
-    pub(crate) surroundings: Vec<SignalId>,
+    pub(crate) surroundings: Vec<(SignalId, f64)>,
     pub(crate) initial: State,
     pub(crate) channels: Vec<Channel>,
     pub(crate) sources: Vec<Source>,

@@ -204,10 +204,10 @@ impl Simulation {
             self.state.network.prescribe(k, signals[prescription.signal.index()]);
         }
         self.state.network.ambient_k = signals[self.plan.ground.index()];
-        for (around, id) in
+        for (around, (id, difference_k)) in
             self.state.network.surroundings_k.iter_mut().zip(&self.plan.surroundings)
         {
-            *around = signals[id.index()];
+            *around = signals[id.index()] + difference_k;
         }
     }
 

@@ -65,9 +65,15 @@ pub struct PipeParams {
     /// Thermal resistance water to surroundings per length, K m/W. Absent: no heat loss.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub insulation_resistance_k_m_w: Option<f64>,
+    /// Heat loss over what the other fields say.
+    #[serde(default = "one")]
+    pub heat_loss_factor: f64,
     /// Temperature around the pipe, K. Absent: the ground temperature of the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings_k: Option<f64>,
+    /// Added to the temperature around the pipe, K.
+    #[serde(default)]
+    pub surroundings_difference_k: f64,
     /// Temperature of the water at the start, K. Absent: the initial temperature of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub initial_k: Option<f64>,
@@ -79,6 +85,10 @@ fn default_roughness() -> f64 {
 
 fn default_delta_m() -> f64 {
     0.3
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 impl Default for PipeParams {
@@ -95,7 +105,9 @@ impl Default for PipeParams {
             fixed_velocity_m_s: None,
             delta_m: default_delta_m(),
             insulation_resistance_k_m_w: None,
+            heat_loss_factor: one(),
             surroundings_k: None,
+            surroundings_difference_k: 0.0,
             initial_k: None,
         }
     }
@@ -185,6 +197,7 @@ impl PipeParams {
             None => f64::INFINITY,
             Some(resistance) => {
                 positive("insulation_resistance_k_m_w", resistance)? * capacity_j_k_m
+                    / positive("heat_loss_factor", self.heat_loss_factor)?
             }
         };
         let thermal = PlugFlowPipe {

@@ -2,6 +2,7 @@
 
 mod components;
 mod composites;
+mod effects;
 mod plants;
 mod station_types;
 mod three_way_valves;
@@ -45,6 +46,7 @@ pub(super) const SECTIONS: &[&str] = &[
     "schedule",
     "series",
     "pressure_reference",
+    "effect",
 ];
 
 /// Reads a whole document.
@@ -158,6 +160,7 @@ impl ModelReader<'_> {
             prescriptions: self.prescriptions(),
             drivers: self.drivers(start),
             references: self.references(),
+            effects: self.effects(),
             name: about.as_ref()?.0.name.clone(),
             gravity_m_s2: about.as_ref()?.0.gravity,
             thermosiphon: about?.0.thermosiphon,

@@ -1,6 +1,7 @@
 //! The JSON Schema of the model file, assembled from the entries and the registries.
 
 use super::*;
+use crate::effects::EffectParams;
 use anergy_control::controllers::ControllerParams;
 use anergy_core::units::alternatives;
 use anergy_network::elements::ElementParams;
@@ -66,10 +67,11 @@ pub fn schema() -> Value {
         "trench": list(trench),
         "station": list(station),
         "node": list(entry(&schema_for!(NodeEntry), &[])),
-        "edge": list(kinds(ElementParams::KINDS, ElementParams::schema, &edge_ends, &["id", "from", "to"])),
+        "edge": list(kinds("kind", ElementParams::KINDS, ElementParams::schema, &edge_ends, &["id", "from", "to"])),
         "three_way_valve": list(three_way_valve),
         "interface": list(entry(&schema_for!(InterfaceEntry), &[])),
         "unit": list(kinds(
+            "kind",
             EquipmentParams::KINDS,
             EquipmentParams::schema,
             &[
@@ -82,6 +84,7 @@ pub fn schema() -> Value {
             &[],
         )),
         "controller": list(kinds(
+            "kind",
             ControllerParams::KINDS,
             ControllerParams::schema,
             &[
@@ -96,6 +99,17 @@ pub fn schema() -> Value {
         "schedule": list(entry(&schema_for!(ScheduleEntry), &[])),
         "series": list(entry(&schema_for!(SeriesEntry), &[])),
         "pressure_reference": { "oneOf": [reference.clone(), list(reference)] },
+        "effect": list(kinds(
+            "id",
+            EffectParams::KINDS,
+            EffectParams::schema,
+            &[
+                ("component", text("Component it belongs to")),
+                ("because", text("Why it is here; changes nothing")),
+                ("ci95", json!({ "description": "Interval of the value; changes nothing" })),
+            ],
+            &["component"],
+        )),
     });
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -149,8 +163,9 @@ fn part_schema(part: &str) -> Value {
     schema
 }
 
-/// One schema per kind, chosen by the word of `kind`.
+/// One schema per kind, chosen by the word of `field`.
 fn kinds(
+    field: &str,
     words: &[&str],
     schema: impl Fn(&str) -> Option<Schema>,
     own: &[(&str, Value)],
@@ -160,7 +175,7 @@ fn kinds(
         .iter()
         .filter_map(|word| {
             let mut own = own.to_vec();
-            own.insert(0, ("kind", json!({ "const": word })));
+            own.insert(0, (field, json!({ "const": word })));
             if *word == "pipe" {
                 own.push((
                     "pipe",
@@ -168,7 +183,7 @@ fn kinds(
                 ));
             }
             let mut variant = entry(&schema(word)?, &own);
-            let mut all: Vec<Value> = vec![json!("kind")];
+            let mut all: Vec<Value> = vec![json!(field)];
             all.extend(required.iter().map(|name| json!(name)));
             // A pipe may take its dimensions from a type; fields with units have alternatives.
             variant["required"] = Value::Array(all);

@@ -27,7 +27,7 @@ pub(super) struct Words {
     /// What was taken out.
     taken: Vec<WrittenField>,
     /// What it was asked for.
-    asked: Vec<&'static str>,
+    pub asked: Vec<&'static str>,
 }
 
 impl Words {
@@ -283,7 +283,11 @@ impl ModelReader<'_> {
     }
 
     /// What remains of an entry, as the parameters of its kind.
-    fn parameters<P: Registered>(&mut self, words: Words, kind: &str) -> Option<(P, Place)> {
+    pub(super) fn parameters<P: Registered>(
+        &mut self,
+        words: Words,
+        kind: &str,
+    ) -> Option<(P, Place)> {
         let Words { what, tree, taken, asked } = words;
         let (params, table) = self.reader.read_kind::<P>(&what, &tree, kind, &asked)?;
         let mut place = place(&what, &tree, &table);
@@ -292,21 +296,30 @@ impl ModelReader<'_> {
     }
 
     fn kind<P: Registered>(&mut self, words: &mut Words) -> Option<String> {
-        let span = words.tree.get("kind").and_then(|tree| tree.span.clone());
-        let possible = format!("possible kinds: {}", P::KINDS.join(", "));
-        if words.tree.get("kind").is_none() {
-            let message = format!("{}: kind is missing", words.what);
+        self.word_of::<P>(words, "kind")
+    }
+
+    /// The word of a registry that an entry names in a field.
+    pub(super) fn word_of<P: Registered>(
+        &mut self,
+        words: &mut Words,
+        field: &'static str,
+    ) -> Option<String> {
+        let span = words.tree.get(field).and_then(|tree| tree.span.clone());
+        let possible = format!("possible {field}s: {}", P::KINDS.join(", "));
+        if words.tree.get(field).is_none() {
+            let message = format!("{}: {field} is missing", words.what);
             let problem = Diagnostic::new(message, words.tree.span.clone());
             self.reader.report(problem.with_hint(possible));
             return None;
         }
-        let kind = self.required_text(words, "kind")?;
+        let kind = self.required_text(words, field)?;
         if P::KINDS.contains(&kind.as_str()) {
             return Some(kind);
         }
         let guess = did_you_mean(&kind, P::KINDS.iter().copied());
         let hint = guess.map_or(possible.clone(), |guess| format!("{guess} {possible}"));
-        let message = format!("{}: unknown kind \"{kind}\"", words.what);
+        let message = format!("{}: unknown {field} \"{kind}\"", words.what);
         self.reader.report(Diagnostic::new(message, span).with_hint(hint));
         None
     }

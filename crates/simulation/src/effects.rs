@@ -1,0 +1,18 @@
+//! REGISTRY of the effects: adding one is one file, its `mod` line and its line below.
+
+mod friction;
+mod insulation;
+mod length;
+mod surroundings;
+
+use crate::effect::{EffectError, ModelChange};
+
+anergy_core::registry! {
+    /// Every effect a model file can name; the words are the catalogue's.
+    pub enum Effect: dyn ModelChange, params EffectParams, context (), error EffectError {
+        Insulation("P2", insulation::Insulation, insulation::Insulation),
+        Surroundings("P3", surroundings::Surroundings, surroundings::Surroundings),
+        Friction("P8", friction::Friction, friction::Friction),
+        Length("P10", length::Length, length::Length),
+    }
+}

@@ -1,0 +1,162 @@
+//! Effects: entries of the model file that add physics; their neutral values change nothing.
+#![allow(clippy::unwrap_used)]
+
+use anergy_core::clock::Time;
+use anergy_simulation::build::build;
+use anergy_simulation::effects::EffectParams;
+use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
+use anergy_simulation::steady;
+use anergy_tests::workspace;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// A pipe of 100 m with a given flow and inlet temperature, 22 mm, R = 2 K m/W, ground 10 degC.
+const PIPE: &str = r#"
+format = 1
+[run]
+initial_degc = 60
+[ground]
+temperature_degc = 10
+[[node]]
+id = "in"
+kind = "source"
+m_flow_kg_s = 0.1
+temperature_degc = 60
+[[node]]
+id = "out"
+kind = "pressure_boundary"
+pressure_bar = 1
+[[edge]]
+id = "pipe"
+kind = "pipe"
+from = "in"
+to = "out"
+length_m = 100
+inner_diameter_mm = 22
+roughness_mm = 0.05
+insulation_resistance_k_m_w = 2
+"#;
+
+fn model(effects: &str) -> Model {
+    Model::from_toml(&format!("{PIPE}{effects}"), Path::new(".")).unwrap()
+}
+
+fn outlet_degc(model: &Model) -> f64 {
+    steady::solve(model).unwrap().node("out").unwrap().t_k - 273.15
+}
+
+fn dp_pa(model: &Model) -> f64 {
+    steady::solve(model).unwrap().edge("pipe").unwrap().dp_pa
+}
+
+/// The neutral values of every effect.
+fn neutral(id: &str) -> Value {
+    match id {
+        "P2" | "P10" => json!({ "factor": 1.0 }),
+        "P3" => json!({ "difference_k": 0.0, "lag_s": 0.0 }),
+        "P8" => json!({ "factor": 1.0, "added_roughness_m": 0.0 }),
+        other => panic!("effect {other} has no neutral value here"),
+    }
+}
+
+#[test]
+fn neutral_values_leave_the_model_and_its_run_identical() {
+    let dir = workspace().join("examples/three-houses");
+    let text = std::fs::read_to_string(dir.join("model.toml")).unwrap();
+    let plain = Model::from_toml(&text, &dir).unwrap();
+    let end = |model: &Model| {
+        let mut simulation = Simulation::new(build(model).unwrap()).unwrap();
+        simulation.advance_to(Time::from_s(300.0).unwrap(), Time::from_s(1.0).unwrap()).unwrap();
+        simulation.snapshot().to_bytes().unwrap()
+    };
+    let before = end(&plain);
+    for id in EffectParams::KINDS {
+        let Value::Object(params) = neutral(id) else { panic!() };
+        let fields: String =
+            params.iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
+        let entry =
+            format!("{text}\n[[effect]]\nid = \"{id}\"\ncomponent = \"sf1-sf2.hot\"\n{fields}");
+        let with = Model::from_toml(&entry, &dir).unwrap();
+        assert_eq!(with.effects.len(), 1, "{id}");
+        let mut effective = with.with_effects().unwrap().into_owned();
+        // The text is what was read, with the entry.
+        effective.text.clone_from(&plain.text);
+        assert_eq!(effective, plain, "{id}");
+        assert_eq!(end(&with), before, "{id}");
+    }
+}
+
+#[test]
+fn insulation_scales_the_loss() {
+    // T_out = 10 + 50 exp(-f L/(R m cp)), L/(R m cp) = 100/(2 * 0.1 * 4180) = 0.119617:
+    // f = 1: 54.3636, f = 2: 49.3611
+    let by_hand = |factor: f64| 10.0 + 50.0 * (-factor * 100.0 / (2.0 * 0.1 * 4180.0)).exp();
+    let plain = outlet_degc(&model(""));
+    assert!((plain - by_hand(1.0)).abs() < 1e-6, "{plain} {}", by_hand(1.0));
+    let twice = model("[[effect]]\nid = \"P2\"\ncomponent = \"pipe\"\nfactor = 2\n");
+    assert!((outlet_degc(&twice) - by_hand(2.0)).abs() < 1e-6);
+    assert!((by_hand(2.0) - 49.3611).abs() < 1e-3);
+}
+
+#[test]
+fn surroundings_are_warmer_by_the_difference() {
+    // 15 + 45 exp(-0.119617) = 54.9272
+    let warmer = model("[[effect]]\nid = \"P3\"\ncomponent = \"pipe\"\ndifference_k = 5\n");
+    assert!((outlet_degc(&warmer) - 54.9272).abs() < 1e-3, "{}", outlet_degc(&warmer));
+}
+
+#[test]
+fn surroundings_arrive_late() {
+    // The ground rises by 1 K in 100 s; with a lag of 50 s the pipe sees at t = 80 s what the ground was at
+    // 30 s: 10.3 degC.
+    let schedule = "[[schedule]]\nsignal = \"ground.temperature_k\"\nunit = \"degC\"\n\
+                    interpolation = \"linear\"\npoints = [[0, 10], [100, 11]]\n";
+    let effect = "[[effect]]\nid = \"P3\"\ncomponent = \"pipe\"\nlag_s = 50\n";
+    let late = model(&format!("{schedule}{effect}"));
+    let mut simulation = Simulation::new(build(&late).unwrap()).unwrap();
+    simulation.advance_to(Time::from_s(80.0).unwrap(), Time::from_s(1.0).unwrap()).unwrap();
+    let around = simulation.channel("pipe.surroundings_k_command").unwrap();
+    let around_k = simulation.get(around);
+    assert!((around_k - 283.45).abs() < 1e-9, "{around_k}");
+    // At a constant ground there is nothing to be late.
+    let problems = build(&model(effect)).unwrap_err().to_string();
+    assert!(problems.contains("lag_s = 50 needs a temperature that changes"), "{problems}");
+}
+
+#[test]
+fn friction_follows_factor_and_roughness() {
+    let before = dp_pa(&model(""));
+    let twice = model("[[effect]]\nid = \"P8\"\ncomponent = \"pipe\"\nfactor = 2\n");
+    assert!((dp_pa(&twice) / before - 2.0).abs() < 1e-12);
+    // 0.05 mm and 0.45 mm more are a pipe with 0.5 mm.
+    let deposit =
+        model("[[effect]]\nid = \"P8\"\ncomponent = \"pipe\"\nadded_roughness_mm = 0.45\n");
+    let text = PIPE.replace("roughness_mm = 0.05", "roughness_mm = 0.5");
+    let rough = Model::from_toml(&text, Path::new(".")).unwrap();
+    assert!((dp_pa(&deposit) / dp_pa(&rough) - 1.0).abs() < 1e-12);
+    assert!(dp_pa(&deposit) > 1.3 * before);
+}
+
+#[test]
+fn a_longer_pipe_has_more_friction_and_loss() {
+    // No fittings: dp goes with the length; the loss of 130 m is that of a factor 1.3.
+    let longer = model("[[effect]]\nid = \"P10\"\ncomponent = \"pipe\"\nfactor = 1.3\n");
+    assert!((dp_pa(&longer) / dp_pa(&model("")) - 1.3).abs() < 1e-12);
+    let lossy = model("[[effect]]\nid = \"P2\"\ncomponent = \"pipe\"\nfactor = 1.3\n");
+    assert!((outlet_degc(&longer) - outlet_degc(&lossy)).abs() < 1e-6);
+}
+
+#[test]
+fn effects_survive_the_plain_form_and_are_cut_out_with_their_pipe() {
+    let told = "[[effect]]\nid = \"P10\"\ncomponent = \"pipe\"\nfactor = 1.3\nci95 = [1.2, 1.4]\n\
+                because = \"delay 30 % longer\"\n";
+    let model = model(told);
+    let text = model.to_plain_toml().unwrap();
+    let again = Model::from_toml(&text, Path::new(".")).unwrap();
+    assert_eq!(again.effects, model.effects);
+    assert_eq!(again.effects[0].provenance["because"], json!("delay 30 % longer"));
+    assert_eq!(dp_pa(&again).to_bits(), dp_pa(&model).to_bits());
+    let part = model.isolate(&["pipe"], &[]).unwrap();
+    assert_eq!(part.effects, model.effects);
+}
