@@ -255,6 +255,7 @@ fn solved(nodes: usize, parts: &[Part]) -> Result<(Vec<f64>, Vec<f64>), String> 
         edges,
         ports: Vec::new(),
         prescriptions: Vec::new(),
+        couplings: Vec::new(),
     };
     if let Some(problem) = network.problems().first() {
         return Err(format!("{problem:?}"));

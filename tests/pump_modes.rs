@@ -56,6 +56,7 @@ fn network(nodes: usize, parts: &[(usize, usize, ElementParams)]) -> Network {
         edges,
         ports: Vec::new(),
         prescriptions: Vec::new(),
+        couplings: Vec::new(),
     }
 }
 

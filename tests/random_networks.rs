@@ -180,6 +180,7 @@ impl Sample {
             edges: edges.collect(),
             ports: Vec::new(),
             prescriptions: Vec::new(),
+            couplings: Vec::new(),
         };
         let exchangers = (0..self.edges.len())
             .filter(|&i| matches!(self.edges[i].params, ElementParams::HeatExchanger(_)));

@@ -97,6 +97,19 @@ pub struct Network {
     pub ports: Vec<EdgeId>,
     /// Quantities that are given while an actuator is left free.
     pub prescriptions: Vec<Prescription>,
+    /// Pipes that lie side by side and exchange heat.
+    pub couplings: Vec<Coupling>,
+}
+
+/// Two pipes side by side and the heat conductance between their contents.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coupling {
+    /// The two pipes; positions are shares of the length from port a.
+    pub edges: [EdgeId; 2],
+    /// Whether port a of the second pipe lies at port b of the first.
+    pub reversed: bool,
+    /// Heat conductance between the two over the whole length, W/K.
+    pub conductance_w_k: f64,
 }
 
 /// A quantity that is given, and the actuator that is free in its place.

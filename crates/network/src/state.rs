@@ -291,6 +291,7 @@ mod tests {
             edges: vec![edge],
             ports: vec![],
             prescriptions: vec![],
+            couplings: vec![],
         };
         // After the rise time x = 5/sqrt(sqrt 2 - 1) = 7.769: 1 - (1 + x) e^-x = 0.99630
         let run = |steps: i32| {

@@ -135,6 +135,7 @@ impl Builder<'_> {
             edges,
             ports,
             prescriptions,
+            couplings: Vec::new(),
         };
         if whole && self.problems.is_empty() {
             self.check_graph(&network);
