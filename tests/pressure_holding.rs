@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
-use anergy_core::medium::water_density_kg_m3;
+use anergy_core::medium::water::density_kg_m3;
 use anergy_core::recorder::Event;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
@@ -61,7 +61,7 @@ fn the_pressure_follows_the_expansion_of_the_water() {
     // 3.2225 bar absolute, 2.2092 bar.
     let text = warm_loop("vessel_volume_l = 200.0\nvessel_precharge_bar = 1.0", "");
     let content_kg = 200.0 * PI / 4.0 * 0.01 * 1000.0;
-    let specific = |t_degc: f64| 1.0 / water_density_kg_m3(273.15 + t_degc);
+    let specific = |t_degc: f64| 1.0 / density_kg_m3(273.15 + t_degc);
     let gas_m3 = 0.2 * (1e5 + ATMOSPHERE_PA) / (1.5e5 + ATMOSPHERE_PA);
     let expanded_m3 = content_kg * (specific(70.0) - specific(10.0));
     let hot_pa = (1.5e5 + ATMOSPHERE_PA) * gas_m3 / (gas_m3 - expanded_m3) - ATMOSPHERE_PA;

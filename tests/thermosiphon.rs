@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
-use anergy_core::medium::water_density_kg_m3;
+use anergy_core::medium::water::density_kg_m3;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
@@ -33,7 +33,7 @@ fn value(simulation: &Simulation, channel: &str) -> f64 {
 }
 
 fn rho(t_degc: f64) -> f64 {
-    water_density_kg_m3(273.15 + t_degc)
+    density_kg_m3(273.15 + t_degc)
 }
 
 /// Sections of one model and the nodes a to d at 0, `high`, `high` and 0 m.
@@ -142,7 +142,7 @@ fn a_boiler_below_a_radiator_starts_from_rest_in_the_right_sense() {
         assert!(m > 1e-4, "{m} kg/s");
         // The buoyancy by the temperatures of the nodes: boiler and riser hot, downcomer cold.
         let t = |node: &str| steady.node(node).unwrap().t_k;
-        let (hot, cold) = (water_density_kg_m3(t("e")), water_density_kg_m3(t("c")));
+        let (hot, cold) = (density_kg_m3(t("e")), density_kg_m3(t("c")));
         let buoyancy_pa = 9.81 * 8.0 * (cold - hot);
         // Friction: pressure differences without the weights.
         let weights = [

@@ -17,7 +17,6 @@ use crate::graph::Network;
 use crate::state::NetworkState;
 use crate::two_port::EdgeThermal;
 use anergy_core::ids::{EdgeId, NodeId};
-use anergy_core::medium::water_density_kg_m3;
 use serde::{Deserialize, Serialize};
 
 /// Pressure of the atmosphere, Pa: pressures of a model are above it.
@@ -82,7 +81,7 @@ impl Vessel {
 
     /// Volume of the water of the circuit at its temperatures, m3.
     pub fn water_m3(&self, network: &Network, state: &NetworkState) -> f64 {
-        let specific = |t_k: f64| 1.0 / water_density_kg_m3(t_k);
+        let specific = |t_k: f64| 1.0 / network.medium.density_at_kg_m3(t_k);
         let mut volume_m3 = 0.0;
         for node in self.nodes.iter().map(|node| node.index()) {
             let water_kg = network.nodes[node].water_kg(network.medium.density_kg_m3);

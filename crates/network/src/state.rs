@@ -32,6 +32,9 @@ pub struct NetworkState {
     /// Density at which the water of each edge weighs on the pressures, kg/m3, where buoyancy counts;
     /// empty where all water weighs the same.
     pub density_kg_m3: Vec<f64>,
+    /// What the water of each edge is in the laws of pressure, where it follows the temperature; empty where
+    /// all water is as the medium.
+    pub law_water: Vec<LawWater>,
     /// Value and state of each prescription of the network.
     pub prescribed: Vec<Prescribed>,
     /// Whether flows and pressures belong to the present positions and boundary values.
@@ -56,6 +59,15 @@ pub struct NetworkState {
     pub port_flows: Vec<PortFlow>,
     /// Content of the pipes.
     pub parcels: Parcels,
+}
+
+/// Properties of the water in an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LawWater {
+    /// Density, kg/m3.
+    pub density_kg_m3: f64,
+    /// Dynamic viscosity, Pa s.
+    pub viscosity_pa_s: f64,
 }
 
 /// A prescription at the moment.
@@ -103,6 +115,7 @@ impl NetworkState {
             ambient_k: initial_k,
             exchange_kg_s: vec![0.0; nodes],
             density_kg_m3: Vec::new(),
+            law_water: Vec::new(),
             prescribed: vec![Prescribed::default(); network.prescriptions.len()],
             hydraulics_valid: false,
             t_node_k: vec![initial_k; nodes],
@@ -124,11 +137,12 @@ impl NetworkState {
     /// What an element is told about its edge.
     #[inline]
     pub fn edge_state(&self, network: &Network, edge: usize) -> EdgeState {
-        EdgeState {
-            position: self.position[edge],
-            density_kg_m3: network.medium.density_kg_m3,
-            viscosity_pa_s: network.medium.viscosity_pa_s,
-        }
+        let medium = &network.medium;
+        let (density_kg_m3, viscosity_pa_s) = match self.law_water.get(edge) {
+            Some(water) => (water.density_kg_m3, water.viscosity_pa_s),
+            None => (medium.density_kg_m3, medium.viscosity_pa_s),
+        };
+        EdgeState { position: self.position[edge], density_kg_m3, viscosity_pa_s }
     }
 
     /// Moves the actuator of an edge towards what `command` asks for at the last flow, over `dt_s`: two

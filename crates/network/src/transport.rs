@@ -12,6 +12,7 @@
 //! **Sources** specification 9 and 10; `vanderheijde2017`.
 
 mod edges;
+mod follow;
 mod nodes;
 pub mod parcels;
 mod plug_flow;
@@ -151,6 +152,7 @@ impl Transport {
         self.advance_edges(network, state, dt_s);
         self.advance_nodes(network, state, dt_s);
         self.weigh(network, state);
+        self.follow(network, state);
         Ok(())
     }
 
@@ -181,6 +183,7 @@ impl Transport {
         }
         state.t_node_k.copy_from_slice(&self.t_mean_k);
         self.weigh_settled(network, state);
+        self.follow_settled(network, state);
         Ok(())
     }
 }

@@ -20,14 +20,10 @@ anergy_core::registry! {
 ///
 /// # Errors
 /// Names the field and its value.
-pub(crate) fn liquid(field: &'static str, t_k: f64) -> Result<f64, UnitError> {
-    if (273.15..=373.15).contains(&t_k) {
-        Ok(t_k)
-    } else {
-        Err(UnitError::OutOfRange {
-            field,
-            value: t_k,
-            requirement: "must lie between 0 degC (273.15 K) and 100 degC (373.15 K)",
-        })
+pub(crate) fn liquid(medium: &Medium, field: &'static str, t_k: f64) -> Result<f64, UnitError> {
+    if medium.is_liquid(t_k) {
+        return Ok(t_k);
     }
+    let (min_degc, max_degc) = medium.range_degc();
+    Err(UnitError::NotLiquid { field, value: t_k, what: medium.name(), min_degc, max_degc })
 }

@@ -59,6 +59,20 @@ pub enum UnitError {
         /// For example `must be positive`.
         requirement: &'static str,
     },
+    /// A temperature at which the medium is not liquid.
+    #[error("{field} = {value} is no temperature of {what} ({min_degc} to {max_degc} degC)")]
+    NotLiquid {
+        /// Field of the model file, in SI.
+        field: &'static str,
+        /// What was given, K.
+        value: f64,
+        /// The medium.
+        what: &'static str,
+        /// Lowest temperature, degC.
+        min_degc: f64,
+        /// Highest temperature, degC.
+        max_degc: f64,
+    },
     /// Two fields of which exactly one must be given.
     #[error("{problem}")]
     Fields {
@@ -71,7 +85,7 @@ impl UnitError {
     /// The field concerned, where one field is.
     pub fn field(&self) -> Option<&'static str> {
         match self {
-            Self::OutOfRange { field, .. } => Some(field),
+            Self::OutOfRange { field, .. } | Self::NotLiquid { field, .. } => Some(field),
             Self::Fields { .. } => None,
         }
     }

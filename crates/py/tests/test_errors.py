@@ -78,16 +78,30 @@ def test_times_that_make_no_sense(model, value):
             model.simulate(until_s=value)
 
 
-def test_a_failing_run_keeps_its_rows(model):
-    """The sources boil the water after 300 s."""
-    data = model.to_dict()
-    for signal in ("sf1.unit.supply_k", "sf2.unit.supply_k"):
-        data["schedule"].append({"signal": signal, "points": [[0, 338.15], [300, 473.15]]})
-    with pytest.raises(anergy.RunError, match="valid from 0 to 100 degC") as raised:
+def test_a_failing_run_keeps_its_rows():
+    """2 m of pipe at rest in air of 150 degC pass 99 degC after 1229 s."""
+    data = {
+        "format": 1,
+        "node": [{"id": "a"}, {"id": "b"}],
+        "edge": [
+            {
+                "id": "oven",
+                "kind": "pipe",
+                "from": "a",
+                "to": "b",
+                "length_m": 2.0,
+                "inner_diameter_m": 0.02,
+                "insulation_resistance_k_m_w": 1.0,
+                "surroundings_k": 423.15,
+            }
+        ],
+        "pressure_reference": [{"node": "a"}],
+    }
+    with pytest.raises(anergy.RunError, match="valid from 0.5 to 99 degC") as raised:
         anergy.Model.from_dict(data).simulate(until_s=3600, record_s=10)
     error = raised.value
-    assert error.time is not None and error.component is not None
-    assert error.result.time_s[-1] >= 300
+    assert error.time is not None and error.component == "oven"
+    assert 1200 <= error.result.time_s[-1] <= 1230
     assert error.result.summary["interrupted"] is True
 
 

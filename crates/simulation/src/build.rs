@@ -302,6 +302,9 @@ impl Builder<'_> {
         if self.model.thermosiphon {
             state.follow_densities(network);
         }
+        if self.model.follow_temperature {
+            state.follow_temperatures(network);
+        }
         State {
             time: Time::ZERO,
             network: state,

@@ -79,15 +79,21 @@ pub enum RunError {
     },
     /// Temperatures left the validity of the medium.
     #[error(
-        "at {time}: the water at \"{component}\" has {t_degc:.2} degC; the model is valid from 0 to 100 degC"
+        "at {time}: the water at \"{component}\" has {t_degc:.2} degC; {what} is valid from {min_degc} to {max_degc} degC"
     )]
     Temperature {
         /// Simulated time.
         time: String,
-        /// Node concerned.
+        /// Node, edge or unit concerned.
         component: String,
         /// Temperature, degC.
         t_degc: f64,
+        /// The medium.
+        what: &'static str,
+        /// Its lowest temperature, degC.
+        min_degc: f64,
+        /// Its highest temperature, degC.
+        max_degc: f64,
     },
     /// A linear system is singular.
     #[error("at {time}: {source}")]

@@ -217,6 +217,8 @@ pub struct Model {
     pub run: RunEntry,
     /// The water.
     pub medium: Medium,
+    /// Whether viscosity and density in the pressure losses of pipes follow the temperature.
+    pub follow_temperature: bool,
     /// Gravity, m/s2.
     pub gravity_m_s2: f64,
     /// Whether warm water is lighter than cold water: buoyancy.

@@ -5,6 +5,7 @@
 
 mod duration;
 pub mod expand;
+mod fluid;
 mod nodes;
 mod plant;
 pub mod read;
@@ -14,6 +15,7 @@ mod tables;
 mod three_way_valve;
 
 pub use duration::Duration;
+pub use fluid::{FluidEntry, FluidKind};
 pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use tables::NetworkEntry;
@@ -84,52 +86,6 @@ fn ten_seconds() -> Duration {
 
 fn twenty_degc() -> f64 {
     293.15
-}
-
-/// `[fluid]`: the water.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FluidEntry {
-    /// Property set.
-    #[serde(default)]
-    pub kind: FluidKind,
-    /// Density, kg/m3.
-    #[serde(default = "density")]
-    pub density_kg_m3: f64,
-    /// Specific heat capacity, J/(kg K).
-    #[serde(default = "heat_capacity")]
-    pub heat_capacity_j_kg_k: f64,
-    /// Dynamic viscosity, Pa s.
-    #[serde(default = "viscosity")]
-    pub viscosity_pa_s: f64,
-    /// Thermal conductivity, W/(m K).
-    #[serde(default = "conductivity")]
-    pub conductivity_w_m_k: f64,
-}
-
-/// Property sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FluidKind {
-    /// Constant properties: exact energy conservation.
-    #[default]
-    ConstantWater,
-}
-
-fn density() -> f64 {
-    anergy_core::medium::Medium::default().density_kg_m3
-}
-
-fn heat_capacity() -> f64 {
-    anergy_core::medium::Medium::default().heat_capacity_j_kg_k
-}
-
-fn viscosity() -> f64 {
-    anergy_core::medium::Medium::default().viscosity_pa_s
-}
-
-fn conductivity() -> f64 {
-    anergy_core::medium::Medium::default().conductivity_w_m_k
 }
 
 /// `[ground]`: what surrounds the pipes.

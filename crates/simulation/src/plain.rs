@@ -4,6 +4,7 @@
 use crate::diagnostic::Diagnostics;
 use crate::document::to_toml;
 use crate::model::{Model, Place};
+use crate::model_file::FluidEntry;
 use serde_json::{Map, Value, json};
 
 impl Model {
@@ -20,16 +21,7 @@ impl Model {
         }
         file.insert("model".into(), about);
         file.insert("run".into(), without_nulls(json!(self.run)));
-        file.insert(
-            "fluid".into(),
-            json!({
-                "kind": "constant_water",
-                "density_kg_m3": self.medium.density_kg_m3,
-                "heat_capacity_j_kg_k": self.medium.heat_capacity_j_kg_k,
-                "viscosity_pa_s": self.medium.viscosity_pa_s,
-                "conductivity_w_m_k": self.medium.conductivity_w_m_k,
-            }),
-        );
+        file.insert("fluid".into(), FluidEntry::of(&self.medium, self.follow_temperature));
         file.insert("ground".into(), json!({ "temperature_k": self.ground_k }));
         let mut section = |name: &str, entries: Vec<Value>| {
             if !entries.is_empty() {

@@ -4,6 +4,7 @@ mod access;
 mod actuators;
 mod meters;
 mod pressure;
+mod validity;
 mod words;
 
 use crate::channels;
@@ -127,8 +128,9 @@ impl Simulation {
                 }
             }
             self.step_to(end)?;
+            self.check_temperatures(&end)?;
         }
-        self.check_temperatures()
+        Ok(())
     }
 
     /// Controllers that are due read their measured channel and write their signal.
@@ -299,22 +301,6 @@ impl Simulation {
                     network.exchange_kg_s[i] * network.p_pa[i] / density * dt_s;
             }
         }
-    }
-
-    /// Water that would freeze or boil is outside the model.
-    fn check_temperatures(&self) -> Result<(), RunError> {
-        for (i, t_k) in self.state.network.t_node_k.iter().enumerate() {
-            if !(273.15..=373.15).contains(t_k) {
-                let component = self.plan.node_names[i].clone();
-                let time = self.state.time.to_string();
-                return Err(if t_k.is_finite() {
-                    RunError::Temperature { time, component, t_degc: t_k - 273.15 }
-                } else {
-                    RunError::NotFinite { time, component }
-                });
-            }
-        }
-        Ok(())
     }
 
     /// Settles actuators, flows and temperatures once with the present signals; used by the steady

@@ -20,8 +20,6 @@ const SETTLED_K: f64 = 1e-9;
 const SETTLED_KG_S: f64 = 1e-11;
 /// Water that a vessel may take up in the steady state, kg/s, as what a pressure reference may exchange.
 const VESSEL_KG_S: f64 = 1e-6;
-/// Water boils above this, K.
-const HOTTEST_K: f64 = 373.15;
 const MAX_ROUNDS: u32 = 20_000;
 const MAX_CONTROL_ROUNDS: u32 = 60;
 /// Actuator change for the difference quotient, relative to its range where that is finite.
@@ -110,22 +108,10 @@ pub fn settle(simulation: &mut Simulation) -> Result<HydraulicReport, RunError> 
     simulation.state_mut().network.invalidate_hydraulics();
     let last = simulation.solve_hydraulics()?;
     check_vessels(simulation)?;
-    check_boiling(simulation)?;
+    // Heat that cannot get out has no steady state below boiling.
+    simulation.check_temperatures(&"steady state")?;
     let iterations = u32::try_from(simulation.state().iterations).unwrap_or(u32::MAX);
     Ok(HydraulicReport { iterations, ..last })
-}
-
-/// Heat that cannot get out has no steady state below boiling.
-fn check_boiling(simulation: &Simulation) -> Result<(), RunError> {
-    let (plan, network) = (simulation.plan(), &simulation.state().network);
-    match network.t_node_k.iter().position(|t_k| *t_k > HOTTEST_K) {
-        None => Ok(()),
-        Some(node) => Err(RunError::Temperature {
-            time: "steady state".into(),
-            component: plan.node_names[node].clone(),
-            t_degc: network.t_node_k[node] - 273.15,
-        }),
-    }
 }
 
 /// What enters a vessel all the time has no steady state.

@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::model::Place;
 use crate::wording::refused;
-use anergy_core::medium::ZERO_CELSIUS_K;
+use anergy_core::medium::{Medium, ZERO_CELSIUS_K};
 
 /// A range of temperatures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,20 +16,17 @@ pub(crate) struct Temperatures {
     what: &'static str,
 }
 
-/// Liquid water under the atmosphere, the validity of the medium: a run refuses to leave it.
-pub(crate) const WATER: Temperatures =
-    Temperatures { low_degc: 0.0, high_degc: 100.0, what: "liquid water" };
-
-/// Water that a schedule, a controller or a program asks for while a run goes on. What boils is refused
-/// by the run, which keeps the rows until then; beyond this it is a mistake of the file.
-pub(crate) const DRIVEN_WATER: Temperatures =
-    Temperatures { low_degc: 0.0, high_degc: 200.0, what: "water" };
-
 /// Ground, air and whatever else a pipe lies in.
 pub(crate) const SURROUNDINGS: Temperatures =
     Temperatures { low_degc: -60.0, high_degc: 200.0, what: "the surroundings" };
 
 impl Temperatures {
+    /// Where the medium of a model is liquid, its validity: a run refuses to leave it.
+    pub(crate) fn of_liquid(medium: &Medium) -> Self {
+        let (low_degc, high_degc) = medium.range_degc();
+        Self { low_degc, high_degc, what: medium.name() }
+    }
+
     /// Smallest and largest value, K.
     pub(crate) fn range_k(&self) -> (f64, f64) {
         // To hundredths, so that the limits are the numbers that people write.

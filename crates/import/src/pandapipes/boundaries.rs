@@ -6,7 +6,7 @@ use crate::{ImportError, NoteKind};
 use std::collections::HashMap;
 
 /// Temperatures of liquid water.
-const LIQUID_K: std::ops::RangeInclusive<f64> = 273.15..=373.15;
+const LIQUID_K: std::ops::RangeInclusive<f64> = 273.65..=372.15;
 
 /// A given pressure at a junction.
 pub(super) struct Fixed {

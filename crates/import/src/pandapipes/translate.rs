@@ -297,7 +297,7 @@ impl Writer<'_> {
                     .maybe("temperature_difference_k", difference)
                     .maybe("return_k", return_k)
                     .number("v_flow_max_m3_s", ANY_FLOW_M3_S)
-                    .number("coldest_return_k", 273.15);
+                    .number("coldest_return_k", 273.65);
             }
             _ if m_flow.is_some() => {
                 self.text.edge(id, "flow_source", from, to).maybe("m_flow_kg_s", m_flow);

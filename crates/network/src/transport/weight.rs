@@ -18,7 +18,6 @@ use super::{Transport, plug_flow};
 use crate::graph::Network;
 use crate::state::NetworkState;
 use crate::two_port::EdgeThermal;
-use anergy_core::medium::water_density_kg_m3;
 
 /// Water this slow counts as standing in the steady state, kg/s.
 const REST_KG_S: f64 = 1e-6;
@@ -31,12 +30,13 @@ impl NetworkState {
     /// From now on the water weighs what it does at its temperature.
     pub fn follow_densities(&mut self, network: &Network) {
         let all = 0..network.edges.len();
-        self.density_kg_m3 = all.map(|i| water_density_kg_m3(self.content_k(network, i))).collect();
+        self.density_kg_m3 =
+            all.map(|i| network.medium.density_at_kg_m3(self.content_k(network, i))).collect();
         self.hydraulics_valid = false;
     }
 
     /// Mean temperature of the water in an edge, K.
-    fn content_k(&self, network: &Network, i: usize) -> f64 {
+    pub(super) fn content_k(&self, network: &Network, i: usize) -> f64 {
         match network.edges[i].element.thermal() {
             EdgeThermal::PlugFlow(_) => self.parcels.mean_k(i).unwrap_or(self.t_edge_k[i]),
             EdgeThermal::Pass | EdgeThermal::Exchanger(_) => self.t_edge_k[i],
@@ -58,7 +58,7 @@ impl Transport {
     pub(super) fn weigh(&self, network: &Network, state: &mut NetworkState) {
         for i in 0..state.density_kg_m3.len() {
             let t_k = state.content_k(network, i);
-            state.weigh_edge(i, water_density_kg_m3(t_k));
+            state.weigh_edge(i, network.medium.density_at_kg_m3(t_k));
         }
     }
 
@@ -67,7 +67,7 @@ impl Transport {
         for i in 0..state.density_kg_m3.len() {
             if let Some(t_k) = self.settled_k(network, state, i) {
                 let before = state.density_kg_m3[i];
-                let change = water_density_kg_m3(t_k) - before;
+                let change = network.medium.density_at_kg_m3(t_k) - before;
                 state.weigh_edge(i, before + SETTLING * change);
             }
         }
@@ -75,7 +75,12 @@ impl Transport {
 
     /// Mean temperature of the water in an edge in the steady state, K; `None` for water at rest that
     /// nothing warms or cools.
-    fn settled_k(&self, network: &Network, state: &NetworkState, i: usize) -> Option<f64> {
+    pub(super) fn settled_k(
+        &self,
+        network: &Network,
+        state: &NetworkState,
+        i: usize,
+    ) -> Option<f64> {
         let edge = &network.edges[i];
         let m = state.m_flow_kg_s[i];
         let standing = m.abs() <= REST_KG_S;

@@ -91,7 +91,7 @@ impl HeatLoadParams {
         let out_of_range =
             |field, value, requirement| Err(UnitError::OutOfRange { field, value, requirement });
         let return_water = match (self.return_k, self.temperature_difference_k) {
-            (Some(t_k), None) => ReturnWater::Temperature(super::liquid("return_k", t_k)?),
+            (Some(t_k), None) => ReturnWater::Temperature(super::liquid(medium, "return_k", t_k)?),
             (None, Some(difference)) if difference > 0.0 => ReturnWater::Difference(difference),
             (None, Some(difference)) => {
                 return out_of_range("temperature_difference_k", difference, "must be positive");
@@ -121,7 +121,7 @@ impl HeatLoadParams {
             return_water,
             m_flow_min_kg_s: self.v_flow_min_m3_s * medium.density_kg_m3,
             m_flow_max_kg_s: self.v_flow_max_m3_s * medium.density_kg_m3,
-            coldest_return_k: super::liquid("coldest_return_k", self.coldest_return_k)?,
+            coldest_return_k: super::liquid(medium, "coldest_return_k", self.coldest_return_k)?,
             medium: *medium,
         })
     }

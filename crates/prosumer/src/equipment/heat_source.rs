@@ -61,7 +61,7 @@ impl HeatSourceParams {
         let fields = |problem: &str| Err(UnitError::Fields { problem: problem.to_owned() });
         let supply = match (self.supply_k, self.outdoor_curve_k.as_slice()) {
             (Some(t_k), []) if self.outdoor_k.is_none() => {
-                Supply::Fixed(super::liquid("supply_k", t_k)?)
+                Supply::Fixed(super::liquid(medium, "supply_k", t_k)?)
             }
             (Some(_), []) => return fields("outdoor_k (outdoor_degc) needs an outdoor_curve_degc"),
             (None, points @ [_, ..]) => {
@@ -71,7 +71,7 @@ impl HeatSourceParams {
                     }
                 }
                 for point in points {
-                    super::liquid("outdoor_curve_k", point.1)?;
+                    super::liquid(medium, "outdoor_curve_k", point.1)?;
                 }
                 let outdoor_k = self.outdoor_k.unwrap_or(OUTDOOR_K);
                 Supply::Curve { points: points.to_vec(), outdoor_k }

@@ -40,7 +40,7 @@ impl PrescribedSourceParams {
     /// # Errors
     /// Names the field that is out of range.
     pub fn build(&self, medium: &Medium) -> Result<PrescribedSource, UnitError> {
-        super::liquid("supply_k", self.supply_k)?;
+        super::liquid(medium, "supply_k", self.supply_k)?;
         if !self.v_flow_m3_s.is_finite() {
             return Err(UnitError::OutOfRange {
                 field: "v_flow_m3_s",

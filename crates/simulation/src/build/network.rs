@@ -4,7 +4,7 @@ use super::Builder;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::model::{EdgeSpec, Place};
 use crate::model_file::NodeEntryKind;
-use crate::temperatures::{SURROUNDINGS, WATER};
+use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::refused;
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_network::elements::ElementParams;
@@ -18,8 +18,13 @@ use std::ops::Range;
 const VACUUM_PA: f64 = -1e5;
 
 /// The problems of the temperatures of a pipe. `what` names a pipe that is in no file.
-pub(crate) fn pipe_temperatures(what: &str, pipe: &PipeParams, place: &Place) -> Vec<Diagnostic> {
-    let water = pipe.initial_k.and_then(|t_k| WATER.problem(what, "initial_k", t_k, place));
+pub(crate) fn pipe_temperatures(
+    water: &Temperatures,
+    what: &str,
+    pipe: &PipeParams,
+    place: &Place,
+) -> Vec<Diagnostic> {
+    let water = pipe.initial_k.and_then(|t_k| water.problem(what, "initial_k", t_k, place));
     let around = pipe
         .surroundings_k
         .and_then(|t_k| SURROUNDINGS.problem(what, "surroundings_k", t_k, place));
@@ -40,11 +45,21 @@ pub(super) fn below_vacuum(
 }
 
 impl Builder<'_> {
+    /// Temperatures of the water.
+    pub(super) fn liquid(&self) -> Temperatures {
+        Temperatures::of_liquid(&self.model.medium)
+    }
+
     pub(super) fn nodes(&mut self) -> Vec<Node> {
         for spec in &self.model.nodes {
             let what = format!("node \"{}\"", spec.entry.id);
             if let Some(t_k) = spec.entry.temperature_k {
-                self.problems.extend(WATER.problem(&what, "temperature_k", t_k, &spec.place));
+                self.problems.extend(self.liquid().problem(
+                    &what,
+                    "temperature_k",
+                    t_k,
+                    &spec.place,
+                ));
             }
             if let Some(pressure_pa) = spec.entry.pressure_pa {
                 self.problems.extend(below_vacuum(&what, "pressure_pa", pressure_pa, &spec.place));
@@ -116,7 +131,7 @@ impl Builder<'_> {
             let partner = self.partner(spec, edge_ids);
             if let ElementParams::Pipe(pipe) = &spec.params {
                 let what = format!("edge \"{}\" (pipe)", spec.id);
-                self.problems.extend(pipe_temperatures(&what, pipe, &spec.place));
+                self.problems.extend(pipe_temperatures(&self.liquid(), &what, pipe, &spec.place));
             }
             match spec.params.build(&self.model.medium) {
                 Err(error) => {

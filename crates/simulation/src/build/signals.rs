@@ -6,7 +6,7 @@ use crate::drivers::Driver;
 use crate::model::{ControllerSpec, Place};
 use crate::model_file::NodeEntryKind;
 use crate::plan::{NodeInputs, Plan, PlannedController, PlannedUnit};
-use crate::temperatures::{DRIVEN_WATER, SURROUNDINGS, Temperatures, WATER};
+use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::{in_percent, in_words, refused};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
@@ -45,7 +45,7 @@ impl Builder<'_> {
                 let t_k = exchanges.then(|| {
                     let value = entry.temperature_k.unwrap_or(self.model.run.initial_k);
                     let name = format!("{}.temperature_k", entry.id);
-                    let signal = temperature_signal(&name, value, &DRIVEN_WATER);
+                    let signal = temperature_signal(&name, value, &self.liquid());
                     self.add_signal(signals, signal, &spec.place)
                 });
                 inputs.push(NodeInputs { node, p_pa, m_flow_kg_s, t_k });
@@ -94,7 +94,8 @@ impl Builder<'_> {
                     let what = format!("unit \"{}\" ({})", spec.id, spec.params.kind());
                     let mut problem =
                         refused(&what, &spec.place, error.field(), &error.to_string());
-                    let hint = error.field().and_then(|field| WATER.unit_hint(field, &spec.place));
+                    let hint =
+                        error.field().and_then(|field| self.liquid().unit_hint(field, &spec.place));
                     problem.hint = problem.hint.or(hint);
                     self.problems.push(problem);
                     continue;
@@ -107,7 +108,7 @@ impl Builder<'_> {
                 let signal = if input.name == "outdoor_k" {
                     temperature_signal(&name, input.initial, &SURROUNDINGS)
                 } else if input.unit == "k" && !input.name.contains("difference") {
-                    temperature_signal(&name, input.initial, &DRIVEN_WATER)
+                    temperature_signal(&name, input.initial, &self.liquid())
                 } else {
                     let (unit, max) = (input.unit, f64::INFINITY);
                     SignalSpec { name, unit, initial: input.initial, min: input.min, max }

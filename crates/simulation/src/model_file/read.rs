@@ -3,6 +3,7 @@
 mod components;
 mod composites;
 mod effects;
+mod fluids;
 mod plants;
 mod station_types;
 mod three_way_valves;
@@ -15,7 +16,7 @@ use crate::document::{Tree, TreeKind};
 use crate::fields::{Reader, SiTable};
 use crate::model::*;
 use crate::table::Tables;
-use crate::temperatures::{SURROUNDINGS, Temperatures, WATER};
+use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::refused;
 use anergy_core::medium::Medium;
 use jiff::Timestamp;
@@ -64,6 +65,7 @@ pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> 
         sites: HashMap::new(),
         wrong_sites: HashSet::new(),
         sites_unread: false,
+        medium: Medium::default(),
     };
     let model = reader.model(text);
     let problems = reader.tables.located(reader.reader.problems);
@@ -88,6 +90,8 @@ struct ModelReader<'a> {
     wrong_sites: HashSet<String>,
     /// A table of sites that could not be read whole, and is reported.
     sites_unread: bool,
+    /// The water, as far as it is right.
+    medium: Medium,
 }
 
 /// The stations of a model file.
@@ -109,6 +113,8 @@ impl ModelReader<'_> {
         let fluid = self.single::<FluidEntry>("fluid");
         let ground = self.single::<GroundEntry>("ground");
         let start = run.as_ref().and_then(|(run, place)| self.start(run, place));
+        let medium = fluid.as_ref().and_then(|(fluid, place)| self.medium(fluid, place));
+        self.medium = medium.unwrap_or_default();
         if let Some((about, place)) = &about
             && about.gravity < 0.0
         {
@@ -117,12 +123,12 @@ impl ModelReader<'_> {
             self.reader.report(problem.with_hint("9.81 pulls down: elevations count upwards"));
         }
         if let Some((run, place)) = &run {
-            self.check_temperature(&WATER, "initial_k", run.initial_k, place);
+            let water = self.water();
+            self.check_temperature(&water, "initial_k", run.initial_k, place);
         }
         if let Some((ground, place)) = &ground {
             self.check_temperature(&SURROUNDINGS, "temperature_k", ground.temperature_k, place);
         }
-        let medium = fluid.as_ref().and_then(|(fluid, place)| self.medium(fluid, place));
         let (mut nodes, mut edges) = (Vec::new(), Vec::new());
         let mut interfaces = Vec::new();
         self.network(text);
@@ -166,6 +172,7 @@ impl ModelReader<'_> {
             thermosiphon: about?.0.thermosiphon,
             run: run?.0,
             medium: medium?,
+            follow_temperature: fluid?.0.follow_temperature,
             ground_k: ground?.0.temperature_k,
             nodes,
             edges,
@@ -251,28 +258,6 @@ impl ModelReader<'_> {
 
     fn check_temperature(&mut self, range: &Temperatures, field: &str, t_k: f64, place: &Place) {
         self.reader.problems.extend(range.problem("", field, t_k, place));
-    }
-
-    fn medium(&mut self, fluid: &FluidEntry, place: &Place) -> Option<Medium> {
-        let mut good = true;
-        for (field, value) in [
-            ("density_kg_m3", fluid.density_kg_m3),
-            ("heat_capacity_j_kg_k", fluid.heat_capacity_j_kg_k),
-            ("viscosity_pa_s", fluid.viscosity_pa_s),
-            ("conductivity_w_m_k", fluid.conductivity_w_m_k),
-        ] {
-            if value <= 0.0 {
-                good = false;
-                let message = format!("{field} = {value} must be positive");
-                self.reader.report(refused("[fluid]", place, Some(field), &message));
-            }
-        }
-        good.then_some(Medium {
-            density_kg_m3: fluid.density_kg_m3,
-            heat_capacity_j_kg_k: fluid.heat_capacity_j_kg_k,
-            viscosity_pa_s: fluid.viscosity_pa_s,
-            conductivity_w_m_k: fluid.conductivity_w_m_k,
-        })
     }
 
     fn drivers(&mut self, start: Option<Timestamp>) -> Vec<DriverSpec> {

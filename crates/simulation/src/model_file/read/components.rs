@@ -182,9 +182,12 @@ impl ModelReader<'_> {
                 if let Err(error) = params.build(&Medium::default()) {
                     self.reader.report(refused(&what, &place, error.field(), &error.to_string()));
                 }
-                self.reader
-                    .problems
-                    .extend(crate::build::pipe_temperatures(&what, &params, &place));
+                self.reader.problems.extend(crate::build::pipe_temperatures(
+                    &self.water(),
+                    &what,
+                    &params,
+                    &place,
+                ));
             }
             let sound = self.reader.problems.len() == before;
             types.insert(key.name.clone(), sound.then(|| fields.clone()));
