@@ -234,7 +234,7 @@ type Part = (usize, usize, ElementParams, f64);
 /// Flows and pressures of a network whose node 0 holds the pressure.
 fn solved(nodes: usize, parts: &[Part]) -> Result<(Vec<f64>, Vec<f64>), String> {
     let medium = Medium::default();
-    let node = |kind| Node { kind, elevation_m: 0.0, volume_m3: 0.0 };
+    let node = |kind| Node { kind, elevation_m: 0.0, volume_m3: 0.0, ua_w_k: 0.0 };
     let mut edges = Vec::new();
     for (from, to, params, _) in parts {
         edges.push(Edge {

@@ -37,7 +37,7 @@ fn resistance(m_flow_kg_s: f64) -> ElementParams {
 
 fn network(nodes: usize, parts: &[(usize, usize, ElementParams)]) -> Network {
     let medium = Medium::default();
-    let node = |kind| Node { kind, elevation_m: 0.0, volume_m3: 0.0 };
+    let node = |kind| Node { kind, elevation_m: 0.0, volume_m3: 0.0, ua_w_k: 0.0 };
     let mut all = vec![node(NodeKind::PressureReference)];
     all.resize(nodes, node(NodeKind::Junction));
     let edges = parts.iter().map(|(from, to, params)| Edge {

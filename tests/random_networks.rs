@@ -161,6 +161,7 @@ impl Sample {
             kind: kind(i),
             elevation_m: self.nodes[i].elevation_m,
             volume_m3: self.nodes[i].volume_m3,
+            ua_w_k: 0.0,
         });
         let edges = order.edges.iter().map(|&i| {
             let SampleEdge { from, to, params, .. } = &self.edges[i];

@@ -118,7 +118,12 @@ impl Sample {
             medium,
             gravity_m_s2: GRAVITY_M_S2,
             nodes: nodes
-                .map(|(&kind, &elevation_m)| Node { kind, elevation_m, volume_m3: 0.0 })
+                .map(|(&kind, &elevation_m)| Node {
+                    kind,
+                    elevation_m,
+                    volume_m3: 0.0,
+                    ua_w_k: 0.0,
+                })
                 .collect(),
             edges: kept
                 .iter()

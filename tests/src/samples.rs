@@ -399,9 +399,9 @@ fn heat_exchanger() -> impl Strategy<Value = HeatExchangerParams> {
         logarithmic(10.0, 1e6),
         prop_oneof![Just(0.0), 0.3..1.0],
         any::<bool>(),
-        prop_oneof![Just(0.0), 1e-4..0.1],
+        (prop_oneof![Just(0.0), 1e-4..0.1], prop_oneof![Just(0.0), logarithmic(1e2, 1e5)]),
     );
-    (hydraulic, thermal).prop_map(|(h, (secondary, ua_w_k, flow_exponent, counter, volume_m3))| {
+    (hydraulic, thermal).prop_map(|(h, (secondary, ua_w_k, flow_exponent, counter, volume))| {
         HeatExchangerParams {
             dp_nominal_pa: h.0,
             m_flow_nominal_kg_s: h.1,
@@ -410,7 +410,8 @@ fn heat_exchanger() -> impl Strategy<Value = HeatExchangerParams> {
             flow_exponent,
             arrangement: if counter { Arrangement::CounterFlow } else { Arrangement::ParallelFlow },
             equal_capacity_band: 1e-6,
-            volume_m3,
+            volume_m3: volume.0,
+            wall_capacity_j_k: volume.1,
             delta_m: h.2,
             partner: None,
         }

@@ -6,7 +6,8 @@
 //! `1/UA = 1/hA1 + 1/hA2`, `hA_i = hA_i,nom (|m_i|/m_i,nom)^n`, `hA1_nom/hA2_nom = (m1nom/m2nom)^n`.
 //!
 //! **Assumptions** steady effectiveness, no heat to the surroundings. **Numerics** heat vanishes
-//! linearly with the smaller flow; no division by a flow. **Sources** `incropera2007`, `wetter2014`.
+//! linearly with the smaller flow, in both arrangements with the same slope, so that a stream that turns round
+//! needs no blend; no division by a flow. **Sources** `incropera2007`, `wetter2014`.
 
 use crate::two_port::Exchanger;
 
@@ -72,6 +73,7 @@ mod tests {
             counter_flow: true,
             equal_capacity_band: band,
             volume_kg: 1.0,
+            wall_kg: 0.0,
         }
     }
 
@@ -89,6 +91,18 @@ mod tests {
         let at = |m2: f64| inlet_conductance_w_k(&exchanger(1e-6, 0.0), 0.358, m2, 4180.0, true);
         assert!((at(0.358 * (1.0 + 2e-6)) / at(0.358) - 1.0).abs() < 1e-5);
         assert!((at(0.358 * (1.0 + 0.5e-6)) / at(0.358) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_stream_that_turns_round_makes_no_jump() {
+        for exponent in [0.0, 0.7] {
+            let x = exchanger(1e-6, exponent);
+            let small = 1e-4 * 0.358;
+            let [forward, back] =
+                [true, false].map(|sense| inlet_conductance_w_k(&x, small, 0.3, 4180.0, sense));
+            assert!((forward / (small * 4180.0) - 1.0).abs() < 1e-3, "{forward}");
+            assert!((back / forward - 1.0).abs() < 1e-3, "{back} {forward}");
+        }
     }
 
     #[test]

@@ -38,6 +38,8 @@ pub struct Node {
     pub elevation_m: f64,
     /// Mixed water volume, m3; 0 mixes at once.
     pub volume_m3: f64,
+    /// Heat loss of this volume to the ambient, W/K.
+    pub ua_w_k: f64,
 }
 
 /// An edge: one mass flow, positive from `from` (port a) to `to` (port b).

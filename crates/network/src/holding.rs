@@ -93,7 +93,9 @@ impl Vessel {
                 EdgeThermal::PlugFlow(_) => {
                     state.parcels.iter(edge).map(|p| p.mass_kg * specific(p.mean_k())).sum()
                 }
-                EdgeThermal::Exchanger(x) => x.volume_kg * specific(state.t_edge_k[edge]),
+                EdgeThermal::Exchanger(x) => {
+                    (x.volume_kg - x.wall_kg) * specific(state.t_edge_k[edge])
+                }
             };
         }
         volume_m3

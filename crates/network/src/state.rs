@@ -49,6 +49,10 @@ pub struct NetworkState {
     pub q_loss_w: Vec<f64>,
     /// Heat lost by all nodes, W (mean of the step).
     pub q_loss_nodes_w: f64,
+    /// Rise of temperature by the friction in each edge, K; empty where friction warms nothing.
+    pub friction_k: Vec<f64>,
+    /// Heat of friction in all edges, W (mean of the step).
+    pub q_friction_w: f64,
     /// Enthalpy flow into the network through boundaries and sources, W (mean of the step).
     pub boundary_w: f64,
     /// Temperature of the secondary volume of each port behind an exchanger, K.
@@ -123,6 +127,8 @@ impl NetworkState {
             q_flow_w: vec![0.0; edges],
             q_loss_w: vec![0.0; edges],
             q_loss_nodes_w: 0.0,
+            friction_k: Vec::new(),
+            q_friction_w: 0.0,
             boundary_w: 0.0,
             t_secondary_k: vec![initial_k; ports],
             requests: vec![PortRequest::default(); ports],
@@ -215,6 +221,14 @@ impl NetworkState {
         self.p_pa[edge.from.index()] - self.p_pa[edge.to.index()]
     }
 
+    /// Pressure difference of an edge without its hydrostatic part, Pa: what its law answers.
+    pub fn driving_pa(&self, network: &Network, edge: usize) -> f64 {
+        let (from, to) = (network.edges[edge].from.index(), network.edges[edge].to.index());
+        let rise_m = network.nodes[to].elevation_m - network.nodes[from].elevation_m;
+        let density = self.density_kg_m3.get(edge).unwrap_or(&network.medium.density_kg_m3);
+        self.dp_pa(network, edge) - density * network.gravity_m_s2 * rise_m
+    }
+
     /// Heat stored in all water above 0 degC, J.
     pub fn stored_j(&self, network: &Network) -> f64 {
         let medium = &network.medium;
@@ -263,12 +277,15 @@ const FOLLOWED: f64 = 1e-7;
 /// An actuator this close to its target has arrived.
 const SETTLED: f64 = 1e-9;
 
+/// Water of a node without volume, kg.
+pub(crate) const LEAST_WATER_KG: f64 = 1e-6;
+
 impl crate::graph::Node {
     /// Water that mixes at the node, kg: at least 1 mg, so that the temperature of a node without
     /// volume stays defined, and its energy exact, when the flow stops.
     #[inline]
     pub fn water_kg(&self, density_kg_m3: f64) -> f64 {
-        (self.volume_m3 * density_kg_m3).max(1e-6)
+        (self.volume_m3 * density_kg_m3).max(LEAST_WATER_KG)
     }
 
     /// Whether the node's pressure is given.
@@ -289,7 +306,7 @@ mod tests {
     #[test]
     fn pump_follows_its_rise_time_whatever_the_step() {
         let medium = Medium::default();
-        let node = Node { kind: NodeKind::Junction, elevation_m: 0.0, volume_m3: 0.0 };
+        let node = Node { kind: NodeKind::Junction, elevation_m: 0.0, volume_m3: 0.0, ua_w_k: 0.0 };
         let edge = Edge {
             from: NodeId(0),
             to: NodeId(1),

@@ -7,12 +7,13 @@
 //!
 //! **Equation** node with mass M: `M dT/dt = sum m_in (T_in - T)`, solved exactly over the step:
 //! with `a = sum m_in dt/M` the mean outflow temperature is `g T_old + (1-g) T_mix`,
-//! `g = (1 - e^-a)/a`. Standing nodes without volume relax to the ambient in [`NODE_RELAXATION_S`].
+//! `g = (1 - e^-a)/a`. A loss `UA (T - T_ambient)` is one more inflow, `UA/cp` at the ambient. Standing nodes without volume relax to the ambient in [`NODE_RELAXATION_S`].
 //!
 //! **Sources** specification 9 and 10; `vanderheijde2017`.
 
 mod edges;
 mod follow;
+mod friction;
 mod nodes;
 pub mod parcels;
 mod plug_flow;
@@ -148,7 +149,9 @@ impl Transport {
         for edge in 0..network.edges.len() {
             self.relation[edge] = self.edge_relation(network, state, edge, Some(dt_s));
         }
+        self.add_friction(network, state);
         self.node_temperatures(network, state, Some(dt_s))?;
+        state.q_loss_nodes_w += self.volume_losses_w(network, state);
         self.advance_edges(network, state, dt_s);
         self.advance_nodes(network, state, dt_s);
         self.weigh(network, state);
@@ -177,7 +180,9 @@ impl Transport {
         for edge in 0..network.edges.len() {
             self.relation[edge] = self.edge_relation(network, state, edge, None);
         }
+        self.add_friction(network, state);
         self.node_temperatures(network, state, None)?;
+        state.q_loss_nodes_w = self.volume_losses_w(network, state);
         for edge in 0..network.edges.len() {
             self.settle_edge(network, state, edge);
         }

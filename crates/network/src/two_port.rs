@@ -71,8 +71,10 @@ pub struct Exchanger {
     pub counter_flow: bool,
     /// Where `|1 - Cmin/Cmax|` is below this, `NTU/(1 + NTU)` is used.
     pub equal_capacity_band: f64,
-    /// Mixed water volume of each side, kg.
+    /// Mixed water volume of this side and half of the wall as water of the same capacity, kg.
     pub volume_kg: f64,
+    /// The wall's part of it, kg.
+    pub wall_kg: f64,
 }
 
 /// A command and how the position follows it.

@@ -79,7 +79,11 @@ pub fn page(recording: &Recording) -> String {
         run = section("run", "Run", &parts.run()),
     );
     out += &parts.timed();
-    out += &section("balances", "Balances", &tables::balances(&recording.summary));
+    out += &section(
+        "balances",
+        "Balances",
+        &(tables::balances(&recording.summary) + &tables::pipes(&recording.summary)),
+    );
     out += &section("events", "Events", &tables::events(recording));
     out += &section("more", "Details", &details(recording));
     out += &format!(

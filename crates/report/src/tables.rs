@@ -74,6 +74,30 @@ pub fn balances(summary: &Value) -> String {
     table("balances", "numbers", &head(&["Balance", "#Value", "Unit", "#Relative error"]), &rows)
 }
 
+/// The pipes with the largest losses; nothing where there are none.
+pub fn pipes(summary: &Value) -> String {
+    let entries = entries(summary, "pipes");
+    if entries.is_empty() {
+        return String::new();
+    }
+    let row = |entry: &Value| {
+        let number = |name: &str| format!(r#"<td class="num">{}</td>"#, text(entry, name));
+        let columns = ["lost_kwh", "mean_loss_w", "brought_kwh", "stored_kwh", "relative_error"];
+        let numbers: String = columns.into_iter().map(number).collect();
+        format!(r#"<tr><th scope="row">{}</th>{numbers}</tr>"#, text(entry, "component")) + "\n"
+    };
+    let rows: String = entries.iter().map(row).collect();
+    let columns = [
+        "Pipe",
+        "#Lost in kWh",
+        "#Mean loss in W",
+        "#Brought in kWh",
+        "#Stored in kWh",
+        "#Relative error",
+    ];
+    table("pipes", "numbers", &head(&columns), &rows)
+}
+
 /// Name and value pairs.
 pub fn pairs<'a>(name: &str, pairs: impl Iterator<Item = (&'a str, String)>) -> String {
     let pair = |(name, value): (&str, String)| {

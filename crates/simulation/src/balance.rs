@@ -1,8 +1,9 @@
 //! The balances that every run reports, and the key results of a run.
 
 use crate::channels;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, stored_j};
 use anergy_core::units::l_min;
+use anergy_network::two_port::EdgeThermal;
 use serde_json::{Value, json};
 
 /// Temperatures are resolved by about this: what the merging of parcels may change, K.
@@ -19,6 +20,8 @@ pub struct Balances {
     pub units_j: f64,
     /// Heat from the losses of the pumps into the water.
     pub pump_heat_j: f64,
+    /// Heat of friction in the water, where it is counted.
+    pub friction_j: f64,
     /// Enthalpy that entered through boundaries.
     pub boundary_j: f64,
     /// Heat lost to the surroundings.
@@ -29,7 +32,7 @@ pub struct Balances {
     pub electric_j: f64,
     /// Hydraulic work of pumps and boundaries.
     pub hydraulic_j: f64,
-    /// Hydraulic work dissipated in the other elements; this heat is left out.
+    /// Hydraulic work dissipated in the other elements.
     pub dissipated_j: f64,
     /// Heat that warms all water, and what passed in the largest flow, by `RESOLUTION_K`.
     pub resolution_j: f64,
@@ -49,6 +52,7 @@ impl Balances {
             mass_residual_kg_s: state.largest_mass_residual_kg_s,
             units_j: state.units_j,
             pump_heat_j: state.pump_heat_j,
+            friction_j: state.friction_j,
             boundary_j: state.boundary_j,
             loss_j: state.loss_j,
             stored_j: stored - state.initial_stored_j,
@@ -63,27 +67,102 @@ impl Balances {
     /// Heat that is not accounted for, relative to the heat that was moved, or to what temperatures are
     /// resolved by where next to nothing was.
     pub fn heat_error(&self) -> f64 {
-        let gained_j = self.units_j + self.pump_heat_j + self.boundary_j;
-        let terms = [self.units_j, self.pump_heat_j, self.boundary_j, self.loss_j, self.stored_j];
-        relative(gained_j - self.loss_j - self.stored_j, &terms, self.resolution_j)
+        let gained = [self.units_j, self.pump_heat_j, self.friction_j, self.boundary_j];
+        let terms = gained.into_iter().chain([self.loss_j, self.stored_j]);
+        let gained_j = self.units_j + self.pump_heat_j + self.boundary_j + self.friction_j;
+        relative(gained_j - self.loss_j - self.stored_j, terms, self.resolution_j)
     }
 
     /// Hydraulic work that is not accounted for, relative to the work of the pumps, or to what flows are
     /// resolved by where next to nothing flowed.
     pub fn hydraulic_error(&self) -> f64 {
         let terms = [self.hydraulic_j, self.dissipated_j];
-        relative(self.hydraulic_j - self.dissipated_j, &terms, self.hydraulic_resolution_j)
+        relative(
+            self.hydraulic_j - self.dissipated_j,
+            terms.into_iter(),
+            self.hydraulic_resolution_j,
+        )
     }
 }
 
 /// A difference of the terms over the largest of them, at least over `resolution`.
-fn relative(difference: f64, terms: &[f64], resolution: f64) -> f64 {
-    let scale = terms.iter().fold(resolution, |largest, term| largest.max(term.abs()));
+fn relative(difference: f64, terms: impl Iterator<Item = f64>, resolution: f64) -> f64 {
+    let scale = terms.fold(resolution, |largest, term| largest.max(term.abs()));
     if scale > 0.0 { difference.abs() / scale } else { difference.abs() }
 }
 
 /// Stations among the key results: of more, those with the most heat.
 const KEY_STATIONS: usize = 10;
+/// Where the line of friction stands among the balances: behind the pumps.
+const FRICTION_LINE: usize = 2;
+/// Pipes in the summary: those with the largest losses.
+const KEY_PIPES: usize = 20;
+
+/// Heat of a pipe since the start of a run, J.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PipeBalance {
+    /// The edge.
+    pub edge: usize,
+    /// What the flow has brought and left there.
+    pub brought_j: f64,
+    /// What was lost to the surroundings.
+    pub lost_j: f64,
+    /// Change of what its content holds.
+    pub stored_j: f64,
+    /// Heat that warms its content by `RESOLUTION_K`.
+    pub resolution_j: f64,
+}
+
+impl PipeBalance {
+    /// The balances of all pipes up to now, in the order of the edges.
+    pub fn of(simulation: &Simulation) -> Vec<Self> {
+        let (plan, state) = (simulation.plan(), simulation.state());
+        let medium = &plan.network.medium;
+        let pipes = plan.pipes.iter().zip(&state.pipes).enumerate();
+        pipes
+            .map(|(k, (&edge, heat))| Self {
+                edge,
+                brought_j: heat.brought_j,
+                lost_j: heat.lost_j,
+                stored_j: stored_j(plan, state, k),
+                resolution_j: match plan.network.edges[edge].element.thermal() {
+                    EdgeThermal::PlugFlow(pipe) => {
+                        RESOLUTION_K * medium.heat_capacity_j_kg_k * pipe.content_kg
+                    }
+                    _ => 0.0,
+                },
+            })
+            .collect()
+    }
+
+    /// Heat that is not accounted for, relative to the largest term.
+    pub fn error(&self) -> f64 {
+        let terms = [self.brought_j, self.lost_j, self.stored_j];
+        let left_j = self.brought_j - self.lost_j - self.stored_j;
+        relative(left_j, terms.into_iter(), self.resolution_j)
+    }
+}
+
+/// The pipes with the largest losses, and how well the balances of all of them close.
+fn pipes(simulation: &Simulation) -> (Vec<Value>, f64) {
+    let plan = simulation.plan();
+    let mut all = PipeBalance::of(simulation);
+    let worst = all.iter().map(PipeBalance::error).fold(0.0, f64::max);
+    all.sort_by(|a, b| b.lost_j.abs().total_cmp(&a.lost_j.abs()));
+    all.truncate(KEY_PIPES);
+    let seconds = simulation.time().as_s();
+    let entry = |pipe: &PipeBalance| {
+        json!({
+            "component": plan.edge_names[pipe.edge],
+            "brought_kwh": pipe.brought_j / 3.6e6,
+            "lost_kwh": pipe.lost_j / 3.6e6,
+            "stored_kwh": pipe.stored_j / 3.6e6,
+            "mean_loss_w": if seconds > 0.0 { pipe.lost_j / seconds } else { 0.0 },
+            "relative_error": pipe.error(),
+        })
+    };
+    (all.iter().map(entry).collect(), worst)
+}
 
 /// Key results, balances and statistics of a run as JSON: `summary.json` and the report's tables.
 pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
@@ -120,7 +199,8 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
     key_results.push(result("electricity of the pumps", electric, "kWh", "network"));
     let balance = |label: &str, value: f64, unit: &str, error: f64| json!({ "label": label, "value": value, "unit": unit, "relative_error": error });
     let heat = balances.heat_error();
-    json!({
+    let (pipes, pipe_error) = pipes(simulation);
+    let mut summary = json!({
         "model": plan.model_name,
         "interrupted": interrupted,
         "end_s": state.time.as_s(),
@@ -137,11 +217,20 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
             balance("dissipated", balances.dissipated_j / 3600.0, "Wh", balances.hydraulic_error()),
             balance("electricity", balances.electric_j / 3.6e6, "kWh", 0.0),
         ],
+        "pipes": pipes,
+        "largest_pipe_error": pipe_error,
         "statistics": {
             "steps": state.steps,
             "hydraulic solves": state.solves,
             "Newton iterations": state.iterations,
             "largest mass residual in kg/s": balances.mass_residual_kg_s,
         },
-    })
+    });
+    let friction = balance("heat of friction", balances.friction_j / 3.6e6, "kWh", heat);
+    if !state.network.friction_k.is_empty()
+        && let Some(lines) = summary["balances"].as_array_mut()
+    {
+        lines.insert(FRICTION_LINE, friction);
+    }
+    summary
 }

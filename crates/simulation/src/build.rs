@@ -21,11 +21,10 @@ use anergy_core::ids::{EdgeId, SignalId};
 use anergy_core::recorder::{MapEdge, MapNode, NetworkMap};
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
-use anergy_network::elements::pipe::PipeParams;
 use anergy_network::graph::Network;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::{Station, StationState};
-use anergy_network::state::NetworkState;
+use network::pipes;
 use signals::{Writer, free_signal, temperature_signal};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -197,6 +196,7 @@ impl Builder<'_> {
             prescriptions,
             vessels,
             meters,
+            pipes: pipes(&network),
             pressure_watches,
             drivers,
             signals,
@@ -290,24 +290,9 @@ impl Builder<'_> {
         signals: &SignalTable,
     ) -> State {
         let initial_k = self.model.run.initial_k;
-        let mut state = NetworkState::new(network, initial_k);
-        for (i, spec) in self.model.edges.iter().enumerate() {
-            if let ElementParams::Pipe(PipeParams { initial_k: Some(t_k), .. }) = &spec.params {
-                state.parcels.fill(i, *t_k);
-            }
-        }
-        // A cold solve starts from the pressure level of the model.
-        let level = self.model.references.first().map_or(0.0, |r| r.entry.pressure_pa);
-        state.p_pa.fill(level);
-        if self.model.thermosiphon {
-            state.follow_densities(network);
-        }
-        if self.model.follow_temperature {
-            state.follow_temperatures(network);
-        }
         State {
             time: Time::ZERO,
-            network: state,
+            network: self.initial_water(network),
             signals: signals.initial_values(),
             taken_over: vec![false; signals.specs().len()],
             unit_states: units
@@ -326,6 +311,8 @@ impl Builder<'_> {
             electric_j: 0.0,
             units_j: 0.0,
             pump_heat_j: 0.0,
+            friction_j: 0.0,
+            pipes: Vec::new(),
             loss_j: 0.0,
             boundary_j: 0.0,
             passed_kg: 0.0,

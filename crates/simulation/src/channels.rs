@@ -1,6 +1,7 @@
 //! What can be recorded and measured: every quantity of every component by name.
 
 use crate::plan::Plan;
+use crate::simulation::stored_j;
 use crate::state::State;
 use anergy_core::ids::SignalId;
 use anergy_core::port::Port;
@@ -38,6 +39,10 @@ pub enum Source {
     PipeEnd(usize, Port),
     /// Heat lost by a pipe, W.
     EdgeLoss(usize),
+    /// Heat that a pipe has lost, J.
+    PipeLost(usize),
+    /// Change of the heat that a pipe holds, J.
+    PipeStored(usize),
     /// Heat taken up by an edge, W.
     EdgeHeat(usize),
     /// Temperature of the volume of an edge, K.
@@ -64,6 +69,8 @@ pub enum Source {
     TotalUnits,
     /// Heat from the losses of all pumps, W.
     TotalPumpHeat,
+    /// Heat of friction in all edges, W.
+    TotalFriction,
     /// Heat lost by all pipes and nodes, W.
     TotalLoss,
     /// Enthalpy flow through boundaries, W.
@@ -83,6 +90,8 @@ pub enum Cumulative {
     Units,
     /// Heat from the losses of the pumps.
     PumpHeat,
+    /// Heat of friction.
+    Friction,
     /// Heat lost.
     Loss,
     /// Enthalpy through boundaries.
@@ -156,6 +165,11 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     ] {
         list.add(ChannelGroup::Balances, "network", quantity, unit, source);
     }
+    if !plan.initial.network.friction_k.is_empty() {
+        let joule = Source::Cumulative(Cumulative::Friction);
+        list.add(ChannelGroup::Balances, "network", "friction_w", "W", Source::TotalFriction);
+        list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
+    }
     (list.channels, list.sources)
 }
 
@@ -207,6 +221,10 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
             list.add(group, name, "t_a_k", "K", Source::PipeEnd(i, Port::A));
             list.add(group, name, "t_b_k", "K", Source::PipeEnd(i, Port::B));
             list.add(group, name, "q_loss_w", "W", Source::EdgeLoss(i));
+            if let Ok(pipe) = plan.pipes.binary_search(&i) {
+                list.add(group, name, "loss_j", "J", Source::PipeLost(pipe));
+                list.add(group, name, "stored_j", "J", Source::PipeStored(pipe));
+            }
         }
         Element::HeatExchanger(_) => {
             list.add(group, name, "q_flow_w", "W", Source::EdgeHeat(i));
@@ -251,6 +269,8 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::EdgePower(i) => plan.electric_w(network, i),
         Source::PipeEnd(i, port) => network.parcels.end_k(i, port).unwrap_or(f64::NAN),
         Source::EdgeLoss(i) => network.q_loss_w[i],
+        Source::PipeLost(pipe) => state.pipes.get(pipe).map_or(0.0, |pipe| pipe.lost_j),
+        Source::PipeStored(pipe) => stored_j(plan, state, pipe),
         Source::EdgeHeat(i) => heat(i),
         Source::EdgeVolume(i) => network.t_edge_k[i],
         Source::StationFlow(i) => plan.stations[i].m_flow_kg_s(network),
@@ -267,12 +287,14 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::TotalElectric => plan.total_electric_w(network),
         Source::TotalUnits => plan.total_units_w(network),
         Source::TotalPumpHeat => plan.total_pump_heat_w(network),
+        Source::TotalFriction => network.q_friction_w,
         Source::TotalLoss => plan.total_loss_w(network),
         Source::TotalBoundary => network.boundary_w,
         Source::Stored => network.stored_j(&plan.network),
         Source::Cumulative(Cumulative::Electric) => state.electric_j,
         Source::Cumulative(Cumulative::Units) => state.units_j,
         Source::Cumulative(Cumulative::PumpHeat) => state.pump_heat_j,
+        Source::Cumulative(Cumulative::Friction) => state.friction_j,
         Source::Cumulative(Cumulative::Loss) => state.loss_j,
         Source::Cumulative(Cumulative::Boundary) => state.boundary_j,
     }

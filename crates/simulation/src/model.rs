@@ -223,6 +223,8 @@ pub struct Model {
     pub gravity_m_s2: f64,
     /// Whether warm water is lighter than cold water: buoyancy.
     pub thermosiphon: bool,
+    /// Whether friction warms the water.
+    pub dissipation: bool,
     /// Temperature around the pipes, K.
     pub ground_k: f64,
     /// Nodes.

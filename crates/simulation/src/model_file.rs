@@ -41,6 +41,9 @@ pub struct ModelEntry {
     /// Whether warm water is lighter than cold water: buoyancy.
     #[serde(default)]
     pub thermosiphon: bool,
+    /// Whether the hydraulic power that an edge takes from the water warms it: friction.
+    #[serde(default)]
+    pub dissipation: bool,
 }
 
 fn untitled() -> String {

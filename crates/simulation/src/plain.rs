@@ -19,6 +19,9 @@ impl Model {
         if self.thermosiphon {
             about["thermosiphon"] = json!(true);
         }
+        if self.dissipation {
+            about["dissipation"] = json!(true);
+        }
         file.insert("model".into(), about);
         file.insert("run".into(), without_nulls(json!(self.run)));
         file.insert("fluid".into(), FluidEntry::of(&self.medium, self.follow_temperature));

@@ -107,6 +107,8 @@ pub struct Plan {
     pub(crate) prescriptions: Vec<PlannedPrescription>,
     pub(crate) vessels: Vec<Vessel>,
     pub(crate) meters: Vec<PlannedMeter>,
+    /// Edges that are pipes.
+    pub(crate) pipes: Vec<usize>,
     pub(crate) pressure_watches: Vec<PressureWatch>,
     pub(crate) drivers: Vec<Driver>,
     pub(crate) signals: SignalTable,

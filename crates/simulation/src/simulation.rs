@@ -3,6 +3,7 @@
 mod access;
 mod actuators;
 mod meters;
+mod pipes;
 mod pressure;
 mod validity;
 mod words;
@@ -21,6 +22,7 @@ use anergy_network::graph::NodeKind;
 use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::Hold;
 use anergy_network::transport::Transport;
+pub(crate) use pipes::stored_j;
 pub use pressure::Crossing;
 pub(crate) use pressure::crossings;
 use std::sync::Arc;
@@ -80,6 +82,7 @@ impl Simulation {
         self.solve_hydraulics()?;
         self.settle_heads()?;
         self.watch_pressures(Time::ZERO);
+        self.fill_pipes();
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
         Ok(())
     }
@@ -101,6 +104,7 @@ impl Simulation {
         self.advance_units(dt_s);
         self.watch_stations(end, dt_s);
         self.book(dt_s);
+        self.book_pipes(dt_s);
         self.read_meters(dt_s);
         self.watch_pressures(end);
         self.hold_pressures(dt_s);
@@ -276,6 +280,7 @@ impl Simulation {
         state.electric_j += plan.total_electric_w(network) * dt_s;
         state.units_j += plan.total_units_w(network) * dt_s;
         state.pump_heat_j += plan.total_pump_heat_w(network) * dt_s;
+        state.friction_j += network.q_friction_w * dt_s;
         state.loss_j += plan.total_loss_w(network) * dt_s;
         state.boundary_j += network.boundary_w * dt_s;
         for (heat, station) in state.station_heat_j.iter_mut().zip(&plan.stations) {

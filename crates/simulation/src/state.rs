@@ -18,6 +18,17 @@ pub(crate) struct Reading {
     pub volume_m3: f64,
 }
 
+/// Heat of a pipe since the start of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct PipeHeat {
+    /// What the flow has brought and left there, J.
+    pub brought_j: f64,
+    /// What was lost to the surroundings, J.
+    pub lost_j: f64,
+    /// What its content held at the start, J above 0 degC.
+    pub at_start_j: f64,
+}
+
 /// Everything that changes during a run: plain data. A clone, or its bytes, is a snapshot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -40,6 +51,9 @@ pub struct State {
     pub(crate) electric_j: f64,
     pub(crate) units_j: f64,
     pub(crate) pump_heat_j: f64,
+    pub(crate) friction_j: f64,
+    /// Heat of each pipe, in the order of the edges.
+    pub(crate) pipes: Vec<PipeHeat>,
     pub(crate) loss_j: f64,
     pub(crate) boundary_j: f64,
     /// Water that the largest flow has moved.

@@ -3,7 +3,10 @@
 //! The other side is a thermal unit on this edge's port, or another `heat_exchanger` edge named as
 //! `partner` (two circuits, thermally coupled only). Heat: [`crate::effectiveness`].
 //!
-//! **Equation** `dp = dp_nominal (m/m_nominal)^2`, regularised below `delta_m` times the nominal flow.
+//! **Equation** `dp = dp_nominal (m/m_nominal)^2`, regularised below `delta_m` times the nominal flow. Each
+//! side is a mixed volume behind the steady exchange: `(V rho cp + C_wall/2) dT/dt = m cp (T_steady - T)`.
+//!
+//! **Assumptions** the wall has the temperatures of the water beside it: half of it that of each side.
 //!
 //! **Sources** `elizarov2021` (15.5 kPa at 21.504 l/min), `licklederer2021` (UA 5955 W/K).
 
@@ -55,6 +58,9 @@ pub struct HeatExchangerParams {
     /// Mixed water volume of each side, m3.
     #[serde(default = "default_volume")]
     pub volume_m3: f64,
+    /// Heat capacity of the metal between the two sides, J/K: each side carries half of it. Absent: none.
+    #[serde(default)]
+    pub wall_capacity_j_k: f64,
     /// Regularised below this share of the nominal flow.
     #[serde(default = "default_delta_m")]
     pub delta_m: f64,
@@ -102,6 +108,7 @@ impl Default for HeatExchangerParams {
             arrangement: Arrangement::default(),
             equal_capacity_band: default_band(),
             volume_m3: default_volume(),
+            wall_capacity_j_k: 0.0,
             delta_m: default_delta_m(),
             partner: None,
         }
@@ -123,6 +130,8 @@ impl HeatExchangerParams {
     /// Names the field that is out of range.
     pub fn build(&self, medium: &Medium) -> Result<HeatExchanger, ElementError> {
         let m_nominal = positive("m_flow_nominal_kg_s", self.m_flow_nominal_kg_s)?;
+        let wall_j_k = not_negative("wall_capacity_j_k", self.wall_capacity_j_k)?;
+        let wall_kg = 0.5 * wall_j_k / medium.heat_capacity_j_kg_k;
         let m_secondary = self.m_flow_nominal_secondary_kg_s.unwrap_or(m_nominal);
         Ok(HeatExchanger {
             coefficient: positive("dp_nominal_pa", self.dp_nominal_pa)? / (m_nominal * m_nominal),
@@ -137,7 +146,9 @@ impl HeatExchangerParams {
                 )?,
                 counter_flow: self.arrangement == Arrangement::CounterFlow,
                 equal_capacity_band: not_negative("equal_capacity_band", self.equal_capacity_band)?,
-                volume_kg: not_negative("volume_m3", self.volume_m3)? * medium.density_kg_m3,
+                volume_kg: not_negative("volume_m3", self.volume_m3)? * medium.density_kg_m3
+                    + wall_kg,
+                wall_kg,
             },
         })
     }

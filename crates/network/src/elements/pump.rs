@@ -8,7 +8,8 @@
 //! continued linearly beyond their end and by `H0 + s|V| + a V^2` for reverse flow. Power
 //! `P = V dp/eta` for pumping flow, plus standby, with `eta = eta_h eta_m` or a table `eta(V/u)`; with
 //! `heat_to_water = f` the water takes up the heat `max(f P - V dp, 0)` in the pump (without the standby
-//! power). The work `V dp` itself is not given back where it dissipates: friction warms no water.
+//! power). The work `V dp` itself warms the water where it dissipates, if the model counts friction
+//! (`transport/friction.rs`).
 //!
 //! With `mode = "flow"`, `"head"` or `"proportional_head"` the pump chooses the speed that holds its set
 //! value, up to the full one and down to standstill: a median of three rising laws (`mode.rs`).

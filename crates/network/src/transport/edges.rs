@@ -124,11 +124,12 @@ impl Transport {
             (state.q_flow_w[i], state.q_loss_w[i]) = (0.0, 0.0);
             match edge.element.thermal() {
                 EdgeThermal::Pass => {
+                    let given_k = t_out_k - state.friction_rise_k(i);
                     if m != 0.0 {
                         state.t_edge_k[i] = t_out_k;
-                        state.q_flow_w[i] = m.abs() * cp * (t_out_k - t_in_k);
+                        state.q_flow_w[i] = m.abs() * cp * (given_k - t_in_k);
                     }
-                    self.direct_port(state, i, t_in_k, t_out_k);
+                    self.direct_port(state, i, t_in_k, given_k);
                 }
                 EdgeThermal::PlugFlow(pipe) => {
                     let surroundings_k = state.surroundings_k[i];
@@ -227,12 +228,14 @@ impl Transport {
         let m = state.m_flow_kg_s[i];
         let t_in_k = self.t_mean_k[edge.upstream(m).index()];
         let t_out_k = if m == 0.0 { t_in_k } else { self.outlet_k(network, state, i) };
+        // Without friction, which warms at the outlet.
+        let given_k = if m == 0.0 { t_in_k } else { t_out_k - state.friction_rise_k(i) };
         (state.q_flow_w[i], state.q_loss_w[i]) = (0.0, 0.0);
         match edge.element.thermal() {
             EdgeThermal::Pass => {
-                state.q_flow_w[i] = m.abs() * cp * (t_out_k - t_in_k);
+                state.q_flow_w[i] = m.abs() * cp * (given_k - t_in_k);
                 state.t_edge_k[i] = t_out_k;
-                self.direct_port(state, i, t_in_k, t_out_k);
+                self.direct_port(state, i, t_in_k, given_k);
             }
             EdgeThermal::PlugFlow(pipe) => {
                 if m == 0.0 {
@@ -242,18 +245,18 @@ impl Transport {
                     }
                 } else {
                     let (t_a_k, t_b_k) = match Port::upstream(m) {
-                        Port::A => (t_in_k, t_out_k),
-                        Port::B => (t_out_k, t_in_k),
+                        Port::A => (t_in_k, given_k),
+                        Port::B => (given_k, t_in_k),
                     };
                     state.parcels.fill_linear(i, t_a_k, t_b_k);
-                    state.q_loss_w[i] = m.abs() * cp * (t_in_k - t_out_k);
+                    state.q_loss_w[i] = m.abs() * cp * (t_in_k - given_k);
                 }
             }
             EdgeThermal::Exchanger(exchanger) => {
                 let q_w = self.exchanged_w(network, state, i, &exchanger, t_in_k);
                 state.q_flow_w[i] = q_w;
                 if m != 0.0 {
-                    state.t_edge_k[i] = t_out_k;
+                    state.t_edge_k[i] = given_k;
                 }
                 // A very long step settles the secondary volume.
                 self.secondary(network, state, i, &exchanger, q_w, 1e12);

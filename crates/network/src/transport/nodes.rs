@@ -2,14 +2,15 @@
 
 use super::{NODE_RELAXATION_S, Transport, volume_shares};
 use crate::graph::{Network, NodeKind};
-use crate::state::NetworkState;
+use crate::state::{LEAST_WATER_KG, NetworkState};
 use anergy_core::error::FactorError;
 
 /// Share of the ambient temperature at a node in the steady state, at least: more than rounding.
 const LEAST_RELAXATION: f64 = 1e-12;
 
 impl Transport {
-    /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring.
+    /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring. A volume that
+    /// loses heat mixes with `UA/cp` of water of the ambient's temperature.
     pub(super) fn collect_inflows(&mut self, network: &Network, state: &NetworkState) {
         self.inflow_kg_s.fill(0.0);
         self.inflow_heat.fill(0.0);
@@ -24,6 +25,11 @@ impl Transport {
             if exchange > 0.0 && node.kind != NodeKind::PressureReference {
                 self.inflow_kg_s[i] += exchange;
                 self.inflow_heat[i] += exchange * state.given_t_k[i];
+            }
+            if node.ua_w_k > 0.0 {
+                let like_kg_s = node.ua_w_k / network.medium.heat_capacity_j_kg_k;
+                self.inflow_kg_s[i] += like_kg_s;
+                self.inflow_heat[i] += like_kg_s * state.ambient_k;
             }
         }
     }
@@ -42,6 +48,12 @@ impl Transport {
             }
         }
         state.q_loss_nodes_w = lost / dt_s;
+    }
+
+    /// Heat that node volumes lose to the ambient, W.
+    pub(super) fn volume_losses_w(&self, network: &Network, state: &NetworkState) -> f64 {
+        let nodes = network.nodes.iter().zip(&self.t_mean_k).filter(|(node, _)| node.ua_w_k > 0.0);
+        nodes.map(|(node, t_k)| node.ua_w_k * (t_k - state.ambient_k)).sum()
     }
 
     /// Mean temperatures of the water that leaves the nodes.
@@ -92,13 +104,16 @@ impl Transport {
         if inflow == 0.0 {
             return 1.0;
         }
-        let water_kg = network.nodes[node].water_kg(network.medium.density_kg_m3);
         match dt_s {
-            Some(dt_s) => volume_shares(inflow * dt_s, water_kg).0,
+            Some(dt_s) => {
+                let water_kg = network.nodes[node].water_kg(network.medium.density_kg_m3);
+                volume_shares(inflow * dt_s, water_kg).0
+            }
             // Some relaxation also where water flows (some 1e-7 K), so that a loop without any other
             // exchange of heat has a temperature: T (m + M/t_relax) = m T_mix + M/t_relax T_ambient.
+            // Volumes keep their heat, as in a run, but for their loss.
             None => {
-                let relaxing = water_kg / NODE_RELAXATION_S;
+                let relaxing = LEAST_WATER_KG / NODE_RELAXATION_S;
                 (relaxing / (relaxing + inflow)).max(LEAST_RELAXATION)
             }
         }

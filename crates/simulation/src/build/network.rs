@@ -7,9 +7,10 @@ use crate::model_file::NodeEntryKind;
 use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::refused;
 use anergy_core::ids::{EdgeId, NodeId};
-use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
+use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::{Edge, GraphProblem, Network, Node, NodeKind};
+use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::EquipmentParams;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -29,6 +30,12 @@ pub(crate) fn pipe_temperatures(
         .surroundings_k
         .and_then(|t_k| SURROUNDINGS.problem(what, "surroundings_k", t_k, place));
     water.into_iter().chain(around).collect()
+}
+
+/// The edges that are pipes.
+pub(super) fn pipes(network: &Network) -> Vec<usize> {
+    let edges = network.edges.iter().enumerate();
+    edges.filter(|(_, edge)| matches!(edge.element, Element::Pipe(_))).map(|(i, _)| i).collect()
 }
 
 pub(super) fn below_vacuum(
@@ -76,8 +83,32 @@ impl Builder<'_> {
                 },
                 elevation_m: spec.entry.elevation_m,
                 volume_m3: spec.entry.volume_m3,
+                ua_w_k: spec.entry.ua_w_k,
             })
             .collect()
+    }
+
+    /// All water at rest at its initial temperatures.
+    pub(super) fn initial_water(&self, network: &Network) -> NetworkState {
+        let mut state = NetworkState::new(network, self.model.run.initial_k);
+        for (i, spec) in self.model.edges.iter().enumerate() {
+            if let ElementParams::Pipe(PipeParams { initial_k: Some(t_k), .. }) = &spec.params {
+                state.parcels.fill(i, *t_k);
+            }
+        }
+        // A cold solve starts from the pressure level of the model.
+        let level = self.model.references.first().map_or(0.0, |r| r.entry.pressure_pa);
+        state.p_pa.fill(level);
+        if self.model.thermosiphon {
+            state.follow_densities(network);
+        }
+        if self.model.dissipation {
+            state.count_friction();
+        }
+        if self.model.follow_temperature {
+            state.follow_temperatures(network);
+        }
+        state
     }
 
     pub(super) fn references(&mut self, nodes: &mut [Node], node_ids: &HashMap<&str, usize>) {

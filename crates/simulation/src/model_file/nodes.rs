@@ -18,6 +18,9 @@ pub struct NodeEntry {
     /// Mixed water volume, m3.
     #[serde(default)]
     pub volume_m3: f64,
+    /// Heat loss of this volume to the ground's temperature, W/K.
+    #[serde(default)]
+    pub ua_w_k: f64,
     /// Given pressure, Pa (pressure_boundary).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,

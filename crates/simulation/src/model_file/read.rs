@@ -169,6 +169,7 @@ impl ModelReader<'_> {
             effects: self.effects(),
             name: about.as_ref()?.0.name.clone(),
             gravity_m_s2: about.as_ref()?.0.gravity,
+            dissipation: about.as_ref()?.0.dissipation,
             thermosiphon: about?.0.thermosiphon,
             run: run?.0,
             medium: medium?,

@@ -75,6 +75,15 @@ impl ModelReader<'_> {
                 self.reader.report(problem.with_hint(hint));
             }
         }
+        if entry.ua_w_k < 0.0 {
+            let message = format!("ua_w_k = {} must not be negative", entry.ua_w_k);
+            self.reader.report(refused(&what, &place, Some("ua_w_k"), &message));
+        } else if entry.ua_w_k > 0.0 && entry.volume_m3 <= 0.0 {
+            let message = format!("ua_w_k = {} needs a volume that cools", entry.ua_w_k);
+            let hint = "add volume_l, the water of the node";
+            let problem = refused(&what, &place, Some("ua_w_k"), &message);
+            self.reader.report(problem.with_hint(hint));
+        }
         if entry.volume_m3 < 0.0 {
             let message = format!("volume_m3 = {} must not be negative", entry.volume_m3);
             self.reader.report(refused(&what, &place, Some("volume_m3"), &message));
