@@ -138,6 +138,36 @@ unit = "percent"
 }
 
 #[test]
+fn series_are_scaled_and_shifted_before_their_unit() {
+    let dir = tempfile::tempdir().unwrap();
+    // A converter of 30 to 50 Hz over its command, of a pump with its curve at 50 Hz; a meter that counts
+    // the heat given off as negative.
+    std::fs::write(dir.path().join("run.csv"), "time_s,P_pct,heat_kW\n0,0,-3\n600,50,-2\n")
+        .unwrap();
+    let series = r#"
+[[series]]
+file = "run.csv"
+column = "P_pct"
+signal = "plant.feed_in_pump.speed"
+scale = 0.004
+offset = 0.6
+[[series]]
+file = "run.csv"
+column = "heat_kW"
+signal = "house.load.load_w"
+unit = "kW"
+scale = -1
+interpolation = "linear"
+"#;
+    let mut simulation = simulation(&model_in(&format!("{WARM_COLD}{series}"), dir.path()));
+    advance(&mut simulation, 300.0);
+    assert!((get(&simulation, "plant.feed_in_pump.speed_command") - 0.6).abs() < 1e-12);
+    assert!((get(&simulation, "house.load.load_w_command") - 2500.0).abs() < 1e-9);
+    advance(&mut simulation, 601.0);
+    assert!((get(&simulation, "plant.feed_in_pump.speed_command") - 0.8).abs() < 1e-12);
+}
+
+#[test]
 fn series_with_calendar_times_count_from_the_start_of_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let csv = "when;T\n2024-01-16T23:00:00Z;12\n2024-01-16T23:10:00Z;6\n";

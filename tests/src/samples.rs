@@ -91,13 +91,15 @@ fn pipe() -> impl Strategy<Value = PipeParams> {
         0.005..0.5,
         60.0..150.0,
         0.008..0.03,
+        option::of(0.005..0.1),
     );
     let heat = (option::of(0.5..10.0), option::of(263.0..303.0), option::of(275.0..370.0));
     let wall = prop_oneof![Just(0.0), logarithmic(1e-6, 0.05)];
     let zeta = prop_oneof![Just(0.0), 0.1..50.0];
     (logarithmic(0.1, 5000.0), logarithmic(0.005, 1.2), wall, zeta, law, heat).prop_map(
         |(length_m, inner_diameter_m, wall, zeta, law, heat)| {
-            let ((friction, transition), velocity, delta_m, c, n) = law;
+            let ((friction, transition), velocity, delta_m, c, n, factor) = law;
+            let factor = factor.filter(|_| friction == Correlation::default());
             let hazen_williams = friction == Correlation::HazenWilliams;
             let chezy_manning = friction == Correlation::ChezyManning;
             PipeParams {
@@ -109,7 +111,9 @@ fn pipe() -> impl Strategy<Value = PipeParams> {
                 transition,
                 hazen_williams_c: hazen_williams.then_some(c),
                 manning_n: chezy_manning.then_some(n),
-                fixed_velocity_m_s: velocity.filter(|_| !hazen_williams && !chezy_manning),
+                fixed_velocity_m_s: velocity
+                    .filter(|_| !hazen_williams && !chezy_manning && factor.is_none()),
+                friction_factor: factor,
                 delta_m,
                 insulation_resistance_k_m_w: heat.0,
                 surroundings_k: heat.1,

@@ -258,9 +258,15 @@ pub struct SeriesEntry {
     pub column: String,
     /// The signal it drives.
     pub signal: String,
-    /// Unit of the values. Absent: SI.
+    /// Unit of the values (after `scale` and `offset`). Absent: SI.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// What the values of the file are multiplied by: -1 turns a direction, a converter has its gain.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// What is added then.
+    #[serde(default)]
+    pub offset: f64,
     /// Between the rows.
     #[serde(default)]
     pub interpolation: Interpolation,
@@ -274,4 +280,8 @@ pub struct SeriesEntry {
 
 fn comma() -> char {
     ','
+}
+
+fn one() -> f64 {
+    1.0
 }

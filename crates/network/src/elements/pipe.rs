@@ -2,7 +2,7 @@
 //!
 //! **Equation** `dp = (f(Re) L/d + zeta) rho/2 v|v|`, `v = 4 m/(pi rho d^2)`,
 //! `Re = 4|m|/(pi d mu)`; f from [`crate::friction`]. With `fixed_velocity_m_s` the factor is frozen
-//! at that velocity: `dp = K m|m|`. Hazen-Williams and Chezy-Manning give `dp = K m|m|^(n-1)`. Heat:
+//! at that velocity, `friction_factor` gives it: `dp = K m|m|`. Hazen-Williams and Chezy-Manning give `dp = K m|m|^(n-1)`. Heat:
 //! parcels cool towards the surroundings with `tau = R rho A cp`, R the insulation resistance per length
 //! in K m/W.
 //!
@@ -59,6 +59,9 @@ pub struct PipeParams {
     /// Freezes the friction factor at this velocity, m/s: a purely quadratic law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fixed_velocity_m_s: Option<f64>,
+    /// A friction factor (Darcy: four times Fanning's) that holds at any flow, instead of a correlation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_factor: Option<f64>,
     /// Below this share of the nominal flow a fixed coefficient is regularised.
     #[serde(default = "default_delta_m")]
     pub delta_m: f64,
@@ -103,6 +106,7 @@ impl Default for PipeParams {
             hazen_williams_c: None,
             manning_n: None,
             fixed_velocity_m_s: None,
+            friction_factor: None,
             delta_m: default_delta_m(),
             insulation_resistance_k_m_w: None,
             heat_loss_factor: one(),
@@ -163,7 +167,25 @@ impl PipeParams {
         let re_m = 4.0 / (PI * diameter_m);
         let friction_per_m4 = length_m / diameter_m / (2.0 * area_m2 * area_m2);
         let fittings_per_m4 = self.zeta / (2.0 * area_m2 * area_m2);
-        let law = match (self.power_friction(diameter_m)?, velocity.transpose()?) {
+        let darcy = || DarcyFriction::new(self.friction, self.transition, relative_roughness);
+        let frozen = match (velocity.transpose()?, self.friction_factor) {
+            (None, None) => None,
+            (Some(v), None) => {
+                let re = v * diameter_m * medium.density_kg_m3 / medium.viscosity_pa_s;
+                Some(darcy().factor(re).value)
+            }
+            (None, Some(factor)) if self.friction == Correlation::default() => {
+                Some(positive("friction_factor", factor)?)
+            }
+            (_, Some(_)) => {
+                return Err(ElementError::Fields {
+                    problem: "friction_factor stands for friction and fixed_velocity_m_s: leave \
+                              them out"
+                        .into(),
+                });
+            }
+        };
+        let law = match (self.power_friction(diameter_m)?, frozen) {
             (Some(_), Some(_)) => {
                 return Err(ElementError::Fields {
                     problem:
@@ -176,21 +198,11 @@ impl PipeParams {
                 exponent: law.exponent,
                 v_turbulent_m3_s: POWER_LAW_VELOCITY_M_S * area_m2,
             },
-            (None, velocity) => {
-                let friction =
-                    DarcyFriction::new(self.friction, self.transition, relative_roughness);
-                match velocity {
-                    None => Law::Darcy { friction },
-                    Some(v) => {
-                        let re = v * diameter_m * medium.density_kg_m3 / medium.viscosity_pa_s;
-                        let factor = friction.factor(re).value;
-                        Law::Fixed {
-                            coefficient: factor * friction_per_m4 + fittings_per_m4,
-                            m_turbulent_kg_s: self.delta_m * m_flow_nominal_kg_s,
-                        }
-                    }
-                }
-            }
+            (None, None) => Law::Darcy { friction: darcy() },
+            (None, Some(factor)) => Law::Fixed {
+                coefficient: factor * friction_per_m4 + fittings_per_m4,
+                m_turbulent_kg_s: self.delta_m * m_flow_nominal_kg_s,
+            },
         };
         let capacity_j_k_m = medium.density_kg_m3 * medium.heat_capacity_j_kg_k * area_m2;
         let loss_time_constant_s = match self.insulation_resistance_k_m_w {
@@ -337,6 +349,25 @@ mod tests {
         (params.length_m, params.zeta) = (10.0, 3.5);
         let stub = params.build(&Medium::default()).unwrap();
         assert!((loss(&stub, 8.0 / 60.0) - 0.203_449 * 6400.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn given_friction_factor() {
+        // Fanning 0.004, so Darcy 0.016; 10 m of 51 mm at 2.5 kg/s: A = 2.04282e-3 m2, v = 1.22380 m/s,
+        // (0.016 * 10/0.051 + 2) * 1000/2 * 1.22380^2 = 3846.99 Pa
+        let mut params = PipeParams {
+            length_m: 10.0,
+            inner_diameter_m: 0.051,
+            zeta: 2.0,
+            friction_factor: Some(0.016),
+            ..PipeParams::default()
+        };
+        let pipe = params.build(&Medium::default()).unwrap();
+        assert!((loss(&pipe, 2.5) - 3846.99).abs() < 0.01, "{}", loss(&pipe, 2.5));
+        assert!((loss(&pipe, 5.0) / loss(&pipe, 2.5) - 4.0).abs() < 1e-12);
+        params.fixed_velocity_m_s = Some(1.0);
+        let error = params.build(&Medium::default()).unwrap_err();
+        assert!(error.to_string().contains("friction_factor stands for"), "{error}");
     }
 
     #[test]

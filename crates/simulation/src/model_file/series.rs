@@ -1,4 +1,4 @@
-//! Columns of CSV files as signals over time.
+//! Columns of CSV files as signals over time: `value = file * scale + offset` in the unit of the entry.
 
 use super::SeriesEntry;
 use super::tables::separator_byte;
@@ -30,6 +30,13 @@ pub(super) fn load(
         );
         wrong("separator", message).with_hint("usual are \",\", \";\" and \"\\t\"")
     })?;
+    if entry.scale == 0.0 {
+        let message =
+            format!("series of \"{}\": scale = 0 leaves nothing of the file", entry.signal);
+        return Err(
+            wrong("scale", message).with_hint("a constant is given where the signal starts")
+        );
+    }
     let path = dir.join(&entry.file);
     let file = std::fs::File::open(&path).map_err(|error| {
         wrong("file", format!("series \"{}\": cannot read {}: {error}", entry.signal, entry.file))
@@ -79,7 +86,7 @@ pub(super) fn load(
             return Err(wrong("file", message).with_hint("the times of a series must rise"));
         }
         times_s.push(time_s);
-        values.push(value);
+        values.push(value * entry.scale + entry.offset);
     }
     if values.is_empty() {
         return Err(wrong("file", format!("{} has no rows", entry.file)));
