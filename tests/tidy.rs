@@ -98,6 +98,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "leakage",
     "loss_factor",
     "heat_loss_factor",
+    "friction_factor",
     "open",
     "opening",
     "initial_opening",
