@@ -322,7 +322,7 @@ fn heat_balance_closes() {
         let mut transport = Transport::new(&network).map_err(|error| error.to_string())?;
         let mut random = Random(sample.seed);
         for edge in 0..network.edges.len() {
-            state.parcels.fill(edge, random.between(280.0, 360.0));
+            state.fill_pipe(edge, random.between(280.0, 360.0));
             state.t_edge_k[edge] = random.between(280.0, 360.0);
             state.surroundings_k[edge] = random.between(270.0, 300.0);
         }

@@ -55,8 +55,8 @@ pub const UNITS: &[Unit] = &[
 
 /// SI suffixes that occur in names, longest first where one ends in another.
 pub const SI_SUFFIXES: &[&str] = &[
-    "w_m_k", "k_m_w", "j_kg_k", "kg_m3", "w_m2_k", "m3_s", "m_s", "kg_s", "pa_s", "w_k", "m2",
-    "m3", "kg", "pa", "j", "w", "s", "m", "k",
+    "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "kg_m3", "w_m2_k", "m3_s", "m2_s", "m_s", "kg_s", "pa_s",
+    "w_k", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
 ];
 
 impl Unit {

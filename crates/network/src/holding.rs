@@ -90,9 +90,7 @@ impl Vessel {
         for edge in self.edges.iter().map(|edge| edge.index()) {
             volume_m3 += match network.edges[edge].element.thermal() {
                 EdgeThermal::Pass => 0.0,
-                EdgeThermal::PlugFlow(_) => {
-                    state.parcels.iter(edge).map(|p| p.mass_kg * specific(p.mean_k())).sum()
-                }
+                EdgeThermal::PlugFlow(pipe) => state.sum_over_water(edge, &pipe, specific),
                 EdgeThermal::Exchanger(x) => {
                     (x.volume_kg - x.wall_kg) * specific(state.t_edge_k[edge])
                 }

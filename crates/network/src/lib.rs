@@ -6,6 +6,7 @@
 
 pub mod effectiveness;
 pub mod elements;
+pub mod film;
 pub mod friction;
 pub mod graph;
 pub mod holding;

@@ -1,6 +1,7 @@
 //! Everything of a network that changes during a run: plain data, cloned by a snapshot.
 
 use crate::graph::{Network, NodeKind};
+use crate::transport::cells::Cells;
 use crate::transport::parcels::Parcels;
 use crate::two_port::{EdgeState, EdgeThermal};
 use anergy_core::port::{PortFlow, PortRequest};
@@ -61,8 +62,10 @@ pub struct NetworkState {
     pub requests: Vec<PortRequest>,
     /// What each port's unit got in the last step.
     pub port_flows: Vec<PortFlow>,
-    /// Content of the pipes.
+    /// Content of the pipes whose water exchanges nothing on its way.
     pub parcels: Parcels,
+    /// Content of the other pipes.
+    pub cells: Cells,
 }
 
 /// Properties of the water in an edge.
@@ -137,6 +140,7 @@ impl NetworkState {
                 ports
             ],
             parcels: Parcels::new(network, initial_k),
+            cells: Cells::new(network, initial_k),
         }
     }
 
@@ -229,7 +233,7 @@ impl NetworkState {
         self.dp_pa(network, edge) - density * network.gravity_m_s2 * rise_m
     }
 
-    /// Heat stored in all water above 0 degC, J.
+    /// Heat stored in all water and pipe walls above 0 degC, J.
     pub fn stored_j(&self, network: &Network) -> f64 {
         let medium = &network.medium;
         let mut stored = 0.0;
@@ -239,7 +243,7 @@ impl NetworkState {
         for (i, edge) in network.edges.iter().enumerate() {
             stored += match edge.element.thermal() {
                 EdgeThermal::Pass => 0.0,
-                EdgeThermal::PlugFlow(_) => self.parcels.stored_j(i, medium),
+                EdgeThermal::PlugFlow(pipe) => self.pipe_stored_j(i, &pipe, medium),
                 EdgeThermal::Exchanger(x) => x.volume_kg * medium.enthalpy_j_kg(self.t_edge_k[i]),
             };
         }
@@ -251,12 +255,12 @@ impl NetworkState {
         stored
     }
 
-    /// Heat capacity of all water, J/K.
+    /// Heat capacity of all water and pipe walls, J/K.
     pub fn capacity_j_k(&self, network: &Network) -> f64 {
         let nodes = network.nodes.iter().map(|node| node.water_kg(network.medium.density_kg_m3));
         let edges = network.edges.iter().map(|edge| match edge.element.thermal() {
             EdgeThermal::Pass => 0.0,
-            EdgeThermal::PlugFlow(pipe) => pipe.content_kg,
+            EdgeThermal::PlugFlow(pipe) => pipe.capacity_kg(),
             EdgeThermal::Exchanger(x) => x.volume_kg,
         });
         let behind =

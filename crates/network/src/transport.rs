@@ -11,14 +11,21 @@
 //!
 //! **Sources** specification 9 and 10; `vanderheijde2017`.
 
+pub mod cells;
+mod content;
+mod coupling;
 mod edges;
 mod follow;
 mod friction;
 mod nodes;
 pub mod parcels;
+mod pipes;
 mod plug_flow;
+mod pool;
 mod weight;
 
+use self::coupling::Coupled;
+use self::plug_flow::Decay;
 use crate::graph::Network;
 use crate::state::NetworkState;
 use anergy_core::error::FactorError;
@@ -81,6 +88,10 @@ pub struct Transport {
     /// Mean temperature of the water that leaves each node, K.
     t_mean_k: Vec<f64>,
     lu: SparseLu,
+    /// Heat loss of each pipe over a step of `decays_dt_s`.
+    decays: Vec<Decay>,
+    decays_dt_s: f64,
+    coupled: Coupled,
 }
 
 impl Transport {
@@ -131,6 +142,9 @@ impl Transport {
             inflow_heat: vec![0.0; n],
             t_mean_k: vec![0.0; n],
             lu: SparseLu::analyze(n, &pattern)?,
+            decays: vec![Decay::default(); edges],
+            decays_dt_s: f64::NAN,
+            coupled: Coupled::new(network),
         })
     }
 
@@ -144,6 +158,10 @@ impl Transport {
         state: &mut NetworkState,
         dt_s: f64,
     ) -> Result<(), FactorError> {
+        self.prepare_decays(network, dt_s);
+        state.q_flow_w.fill(0.0);
+        state.q_loss_w.fill(0.0);
+        self.exchange_beside(network, state, 0.5 * dt_s, dt_s);
         self.collect_inflows(network, state);
         self.relax_nodes(network, state, dt_s);
         for edge in 0..network.edges.len() {
@@ -153,6 +171,7 @@ impl Transport {
         self.node_temperatures(network, state, Some(dt_s))?;
         state.q_loss_nodes_w += self.volume_losses_w(network, state);
         self.advance_edges(network, state, dt_s);
+        self.exchange_beside(network, state, 0.5 * dt_s, dt_s);
         self.advance_nodes(network, state, dt_s);
         self.weigh(network, state);
         self.follow(network, state);
@@ -192,3 +211,6 @@ impl Transport {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,7 @@
 //! The solver owns the equations, the matrix and the iteration; it never sees a component type, and
 //! a component never sees the matrix.
 
+use crate::film::nusselt;
 use anergy_core::linear::Linear;
 use thiserror::Error;
 
@@ -51,9 +52,97 @@ pub enum EdgeThermal {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlugFlowPipe {
     /// Water content, kg.
+    pub water_kg: f64,
+    /// Heat capacity of the wall, as kg of water; 0 without.
+    pub wall_kg: f64,
+    /// Where that heat is stored.
+    pub wall: Wall,
+    /// Heat capacity that moves as parcels, as kg of water: the water, and a wall in equilibrium with it.
     pub content_kg: f64,
-    /// Time constant of the heat loss, s; infinite without loss.
+    /// Time constant of the heat loss of water and wall together, s; infinite without loss.
     pub loss_time_constant_s: f64,
+    /// Multiplies the heat loss while the water stands still.
+    pub standstill_loss_factor: f64,
+    /// Slower water stands still for that, kg/s.
+    pub standing_kg_s: f64,
+    /// Axial dispersion between the halves of the pipe, as a flow that is exchanged: `rho A D/L`, kg/s.
+    pub dispersion_kg_s: f64,
+}
+
+/// How the wall of a pipe stores heat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Wall {
+    /// Not at all.
+    None,
+    /// In one mixed volume at port b.
+    EndVolume,
+    /// All along, at the temperature of the water.
+    Equilibrium,
+    /// All along, behind the film of the water.
+    Film(Film),
+}
+
+/// The film between water and wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Film {
+    /// Reynolds number over the mass flow, s/kg.
+    pub re_per_kg_s: f64,
+    /// Prandtl number.
+    pub prandtl: f64,
+    /// Heat conductance over the whole length by Nusselt number, as kg/s of water.
+    pub per_nusselt_kg_s: f64,
+}
+
+impl Film {
+    /// Heat conductance between water and wall over the whole length, as kg/s of water.
+    pub fn conductance_kg_s(&self, m_flow_kg_s: f64) -> f64 {
+        self.per_nusselt_kg_s * nusselt(self.re_per_kg_s * m_flow_kg_s.abs(), self.prandtl)
+    }
+}
+
+impl PlugFlowPipe {
+    /// Heat capacity of water and wall, as kg of water.
+    pub fn capacity_kg(&self) -> f64 {
+        self.water_kg + self.wall_kg
+    }
+
+    /// Time constant of the heat loss of water and wall together at a flow, s.
+    #[inline]
+    pub fn loss_time_constant_s(&self, m_flow_kg_s: f64) -> f64 {
+        if m_flow_kg_s.abs() < self.standing_kg_s {
+            self.loss_time_constant_s / self.standstill_loss_factor
+        } else {
+            self.loss_time_constant_s
+        }
+    }
+
+    /// Whether the water is described by cells: it exchanges heat with what it passes.
+    #[inline]
+    pub fn has_cells(&self) -> bool {
+        self.dispersion_kg_s > 0.0 || matches!(self.wall, Wall::Film(_))
+    }
+
+    /// Transfer units of the heat loss of the water in the steady state.
+    pub fn steady_ntu(&self, m_flow_kg_s: f64) -> f64 {
+        match self.wall {
+            Wall::Film(_) => self.loss_kg_s(m_flow_kg_s) / m_flow_kg_s.abs(),
+            // transit time over time constant
+            _ => self.content_kg / m_flow_kg_s.abs() / self.loss_time_constant_s(m_flow_kg_s),
+        }
+    }
+
+    /// Heat conductance from the water to the surroundings over the whole length, as kg/s of water.
+    pub fn loss_kg_s(&self, m_flow_kg_s: f64) -> f64 {
+        let outer = self.capacity_kg() / self.loss_time_constant_s(m_flow_kg_s);
+        match self.wall {
+            Wall::None | Wall::Equilibrium => outer,
+            Wall::EndVolume => outer * self.water_kg / self.capacity_kg(),
+            Wall::Film(film) => {
+                let inner = film.conductance_kg_s(m_flow_kg_s);
+                inner * outer / (inner + outer)
+            }
+        }
+    }
 }
 
 /// Thermal data of a heat exchanger.

@@ -7,6 +7,7 @@ use anergy_core::ids::SignalId;
 use anergy_core::port::Port;
 use anergy_core::recorder::{Channel, ChannelGroup};
 use anergy_network::elements::Element;
+use anergy_network::graph::Coupling;
 
 /// Where the value of a channel comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -225,6 +226,10 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
                 list.add(group, name, "loss_j", "J", Source::PipeLost(pipe));
                 list.add(group, name, "stored_j", "J", Source::PipeStored(pipe));
             }
+            let beside = |coupling: &Coupling| coupling.edges.iter().any(|edge| edge.index() == i);
+            if plan.network.couplings.iter().any(beside) {
+                list.add(group, name, "q_flow_w", "W", Source::EdgeHeat(i));
+            }
         }
         Element::HeatExchanger(_) => {
             list.add(group, name, "q_flow_w", "W", Source::EdgeHeat(i));
@@ -267,7 +272,7 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
             _ => network.position[i],
         },
         Source::EdgePower(i) => plan.electric_w(network, i),
-        Source::PipeEnd(i, port) => network.parcels.end_k(i, port).unwrap_or(f64::NAN),
+        Source::PipeEnd(i, port) => network.pipe_end_k(&plan.network, i, port).unwrap_or(f64::NAN),
         Source::EdgeLoss(i) => network.q_loss_w[i],
         Source::PipeLost(pipe) => state.pipes.get(pipe).map_or(0.0, |pipe| pipe.lost_j),
         Source::PipeStored(pipe) => stored_j(plan, state, pipe),

@@ -2,11 +2,10 @@
 //!
 //! **Equation** `dp = (f(Re) L/d + zeta) rho/2 v|v|`, `v = 4 m/(pi rho d^2)`,
 //! `Re = 4|m|/(pi d mu)`; f from [`crate::friction`]. With `fixed_velocity_m_s` the factor is frozen
-//! at that velocity, `friction_factor` gives it: `dp = K m|m|`. Hazen-Williams and Chezy-Manning give `dp = K m|m|^(n-1)`. Heat:
-//! parcels cool towards the surroundings with `tau = R rho A cp`, R the insulation resistance per length
-//! in K m/W.
+//! at that velocity, `friction_factor` gives it: `dp = K m|m|`. Hazen-Williams and Chezy-Manning give
+//! `dp = K m|m|^(n-1)`. Heat: see [`thermal`].
 //!
-//! **Assumptions** full pipe, one bore, no axial conduction, no inertia. **Validity** all Re.
+//! **Assumptions** full pipe, one bore, no inertia. **Validity** all Re.
 //!
 //! **Numerics** laminar flow is linear, so friction needs no regularisation; fittings are regularised
 //! below Re = 2000, the fixed coefficient below `delta_m` times the nominal flow, the power laws below
@@ -14,6 +13,9 @@
 //!
 //! **Sources** `licklederer2021`, `wetter2014`, `rossman2020`.
 
+pub mod thermal;
+
+use self::thermal::WallModel;
 use crate::friction::{Correlation, DarcyFriction, PowerFriction, RE_LAMINAR, Transition};
 use crate::graph::GRAVITY_M_S2;
 use crate::two_port::{
@@ -71,6 +73,30 @@ pub struct PipeParams {
     /// Heat loss over what the other fields say.
     #[serde(default = "one")]
     pub heat_loss_factor: f64,
+    /// How the wall of the medium pipe stores heat.
+    #[serde(default)]
+    pub wall: WallModel,
+    /// Outer diameter of the medium pipe, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outer_diameter_m: Option<f64>,
+    /// Density of the wall, kg/m3. Default: steel.
+    #[serde(default = "default_wall_density")]
+    pub wall_density_kg_m3: f64,
+    /// Specific heat capacity of the wall, J/(kg K). Default: steel.
+    #[serde(default = "default_wall_heat_capacity")]
+    pub wall_heat_capacity_j_kg_k: f64,
+    /// Heat capacity of the wall per length, J/(m K), in place of the one from its diameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_capacity_j_m_k: Option<f64>,
+    /// Multiplies the heat transfer between water and wall with `wall = "film"`.
+    #[serde(default = "one")]
+    pub wall_film_factor: f64,
+    /// Axial dispersion coefficient of the water, m2/s; 0 keeps fronts sharp.
+    #[serde(default)]
+    pub dispersion_m2_s: f64,
+    /// Multiplies the heat loss while the water stands still.
+    #[serde(default = "one")]
+    pub standstill_loss_factor: f64,
     /// Temperature around the pipe, K. Absent: the ground temperature of the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings_k: Option<f64>,
@@ -88,6 +114,14 @@ fn default_roughness() -> f64 {
 
 fn default_delta_m() -> f64 {
     0.3
+}
+
+fn default_wall_density() -> f64 {
+    7850.0
+}
+
+fn default_wall_heat_capacity() -> f64 {
+    460.0
 }
 
 fn one() -> f64 {
@@ -110,6 +144,14 @@ impl Default for PipeParams {
             delta_m: default_delta_m(),
             insulation_resistance_k_m_w: None,
             heat_loss_factor: one(),
+            wall: WallModel::default(),
+            outer_diameter_m: None,
+            wall_density_kg_m3: default_wall_density(),
+            wall_heat_capacity_j_kg_k: default_wall_heat_capacity(),
+            wall_capacity_j_m_k: None,
+            wall_film_factor: one(),
+            dispersion_m2_s: 0.0,
+            standstill_loss_factor: one(),
             surroundings_k: None,
             surroundings_difference_k: 0.0,
             initial_k: None,
@@ -204,28 +246,17 @@ impl PipeParams {
                 m_turbulent_kg_s: self.delta_m * m_flow_nominal_kg_s,
             },
         };
-        let capacity_j_k_m = medium.density_kg_m3 * medium.heat_capacity_j_kg_k * area_m2;
-        let loss_time_constant_s = match self.insulation_resistance_k_m_w {
-            None => f64::INFINITY,
-            Some(resistance) => {
-                positive("insulation_resistance_k_m_w", resistance)? * capacity_j_k_m
-                    / positive("heat_loss_factor", self.heat_loss_factor)?
-            }
-        };
-        let thermal = PlugFlowPipe {
-            content_kg: medium.density_kg_m3 * area_m2 * length_m,
-            loss_time_constant_s,
-        };
         Ok(Pipe {
             length_m,
             law,
             re_m,
             friction_per_m4,
             fittings_per_m4,
-            thermal,
+            thermal: self.thermal(medium, m_flow_nominal_kg_s)?,
             m_flow_nominal_kg_s,
         })
     }
+
     /// The power law, with exactly the coefficient that it needs.
     fn power_friction(&self, diameter_m: f64) -> Result<Option<PowerFriction>, ElementError> {
         let problem = |problem: &str| Err(ElementError::Fields { problem: problem.into() });

@@ -1,11 +1,11 @@
 //! Edges during a step: what leaves them as a function of what enters, and their content afterwards.
 
-use super::{NONE, Relation, Transport, plug_flow, volume_shares};
+use super::{NONE, Relation, Transport, volume_shares};
 use crate::effectiveness::inlet_conductance_w_k;
 use crate::graph::Network;
 use crate::state::NetworkState;
 use crate::two_port::{EdgeThermal, Exchanger};
-use anergy_core::port::{Outlet, Port};
+use anergy_core::port::Outlet;
 
 impl Transport {
     /// What leaves an edge as a function of what enters; `None` for `dt_s` is the steady state.
@@ -36,10 +36,8 @@ impl Transport {
                 },
             },
             EdgeThermal::PlugFlow(pipe) => match dt_s {
-                Some(dt_s) => {
-                    plug_flow::relation(&state.parcels, i, &pipe, m, state.surroundings_k[i], dt_s)
-                }
-                None => plug_flow::steady_relation(&pipe, m, state.surroundings_k[i]),
+                Some(dt_s) => self.pipe_relation(state, i, &pipe, m, dt_s),
+                None => self.steady_pipe(network, state, i, &pipe, m),
             },
             EdgeThermal::Exchanger(exchanger) => {
                 let (kept, _) = match dt_s {
@@ -121,7 +119,6 @@ impl Transport {
             let m = state.m_flow_kg_s[i];
             let t_in_k = self.t_mean_k[edge.upstream(m).index()];
             let t_out_k = if m == 0.0 { t_in_k } else { self.outlet_k(network, state, i) };
-            (state.q_flow_w[i], state.q_loss_w[i]) = (0.0, 0.0);
             match edge.element.thermal() {
                 EdgeThermal::Pass => {
                     let given_k = t_out_k - state.friction_rise_k(i);
@@ -132,16 +129,7 @@ impl Transport {
                     self.direct_port(state, i, t_in_k, given_k);
                 }
                 EdgeThermal::PlugFlow(pipe) => {
-                    let surroundings_k = state.surroundings_k[i];
-                    let lost = plug_flow::advance(
-                        &mut state.parcels,
-                        i,
-                        &pipe,
-                        m,
-                        t_in_k,
-                        surroundings_k,
-                        dt_s,
-                    );
+                    let lost = self.advance_pipe(state, i, &pipe, t_in_k, dt_s);
                     state.q_loss_w[i] = lost * cp / dt_s;
                 }
                 EdgeThermal::Exchanger(exchanger) => {
@@ -238,19 +226,8 @@ impl Transport {
                 self.direct_port(state, i, t_in_k, given_k);
             }
             EdgeThermal::PlugFlow(pipe) => {
-                if m == 0.0 {
-                    if pipe.loss_time_constant_s.is_finite() {
-                        let t_k = state.surroundings_k[i];
-                        state.parcels.fill(i, t_k);
-                    }
-                } else {
-                    let (t_a_k, t_b_k) = match Port::upstream(m) {
-                        Port::A => (t_in_k, given_k),
-                        Port::B => (given_k, t_in_k),
-                    };
-                    state.parcels.fill_linear(i, t_a_k, t_b_k);
-                    state.q_loss_w[i] = m.abs() * cp * (t_in_k - given_k);
-                }
+                self.settle_pipe(network, state, i, &pipe, t_in_k);
+                state.q_loss_w[i] = m.abs() * cp * (t_in_k - given_k) + state.q_flow_w[i];
             }
             EdgeThermal::Exchanger(exchanger) => {
                 let q_w = self.exchanged_w(network, state, i, &exchanger, t_in_k);

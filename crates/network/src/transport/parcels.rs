@@ -2,13 +2,15 @@
 //!
 //! A parcel is a stretch of water, its temperature linear from end to end; the parcels of a pipe are
 //! ordered from port a to port b and their masses sum to the content of the pipe. Water that enters
-//! pushes the others on: no numerical diffusion, an exact front. All parcels of a network live in one
-//! arena with a fixed range per pipe.
+//! pushes the others on: no numerical diffusion, an exact front.
 //!
 //! **Numerics** neighbours are merged, conserving enthalpy exactly, when one straight line describes
-//! both and the changes by all their merges stay within [`MERGE_TOLERANCE_K`]; when a pipe's range is
-//! full, the pair that loses least is merged.
+//! both and the changes by all their merges stay within [`MERGE_TOLERANCE_K`]; when a pipe is full, the
+//! pair that loses least is merged.
 
+mod stretches;
+
+use super::pool::Pool;
 use crate::graph::Network;
 use crate::two_port::EdgeThermal;
 use anergy_core::medium::Medium;
@@ -57,51 +59,35 @@ impl Parcel {
     }
 }
 
-/// Where a pipe's parcels are in the arena: a ring buffer.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Ring {
-    start: u32,
-    first: u32,
-    len: u32,
-}
-
 const NO_PIPE: u32 = u32::MAX;
 
 /// The parcels of all pipes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parcels {
-    arena: Vec<Parcel>,
-    rings: Vec<Ring>,
+    pool: Pool,
     ring_of_edge: Vec<u32>,
 }
 
 impl Parcels {
-    /// One parcel at `initial_k` in every pipe.
+    /// One parcel at `initial_k` in every pipe without cells.
     pub fn new(network: &Network, initial_k: f64) -> Self {
-        let mut parcels = Self { arena: Vec::new(), rings: Vec::new(), ring_of_edge: Vec::new() };
+        let (mut first, mut ring_of_edge) = (Vec::new(), Vec::new());
         for edge in &network.edges {
-            if let EdgeThermal::PlugFlow(pipe) = edge.element.thermal() {
-                parcels.ring_of_edge.push(parcels.rings.len() as u32);
-                let start = parcels.arena.len() as u32;
-                parcels.rings.push(Ring { start, first: 0, len: 1 });
-                let full = parcels.arena.len() + PARCELS_PER_PIPE;
-                parcels.arena.resize(full, Parcel::default());
-                parcels.arena[start as usize] = Parcel::new(pipe.content_kg, initial_k, initial_k);
+            if let EdgeThermal::PlugFlow(pipe) = edge.element.thermal()
+                && !pipe.has_cells()
+            {
+                ring_of_edge.push(first.len() as u32);
+                first.push(Parcel::new(pipe.content_kg, initial_k, initial_k));
             } else {
-                parcels.ring_of_edge.push(NO_PIPE);
+                ring_of_edge.push(NO_PIPE);
             }
         }
-        parcels
+        Self { pool: Pool::new(&first), ring_of_edge }
     }
 
     /// Whether the other parcels belong to the same pipes.
     pub fn fits(&self, other: &Self) -> bool {
-        self.arena.len() == other.arena.len()
-            && self.ring_of_edge == other.ring_of_edge
-            && other.rings.iter().zip(&self.rings).all(|(other, own)| {
-                let slots = PARCELS_PER_PIPE as u32;
-                other.start == own.start && other.first < slots && (1..=slots).contains(&other.len)
-            })
+        self.pool.fits(&other.pool) && self.ring_of_edge == other.ring_of_edge
     }
 
     fn ring(&self, edge: usize) -> Option<usize> {
@@ -109,28 +95,21 @@ impl Parcels {
         (ring != NO_PIPE).then_some(ring as usize)
     }
 
-    /// The i-th parcel of a pipe, counted from port a.
-    #[inline]
-    fn at(&self, ring: usize, i: usize) -> usize {
-        let Ring { start, first, .. } = self.rings[ring];
-        start as usize + (first as usize + i) % PARCELS_PER_PIPE
-    }
-
-    /// Number of parcels in the pipe of an edge; 0 for other edges.
+    /// Number of parcels in the pipe of an edge; 0 for others.
     pub fn count(&self, edge: usize) -> usize {
-        self.ring(edge).map_or(0, |ring| self.rings[ring].len as usize)
+        self.ring(edge).map_or(0, |ring| self.pool.len(ring))
     }
 
     /// The parcels of a pipe from port a to port b.
     pub fn iter(&self, edge: usize) -> impl Iterator<Item = Parcel> + '_ {
         let ring = self.ring(edge);
-        (0..self.count(edge)).filter_map(move |i| ring.map(|ring| self.arena[self.at(ring, i)]))
+        (0..self.count(edge)).filter_map(move |i| ring.map(|ring| self.pool.get(ring, i)))
     }
 
     /// Temperature of the water at an end of a pipe, K; `None` for other edges.
     pub fn end_k(&self, edge: usize, port: Port) -> Option<f64> {
         let ring = self.ring(edge)?;
-        Some(self.arena[self.nth_from(ring, port, 0)].end_k(port))
+        Some(self.near_end(ring, port))
     }
 
     /// Heat stored in a pipe above 0 degC, J.
@@ -158,18 +137,7 @@ impl Parcels {
     pub fn fill_linear(&mut self, edge: usize, t_a_k: f64, t_b_k: f64) {
         let mass_kg = self.iter(edge).map(|parcel| parcel.mass_kg).sum();
         let Some(ring) = self.ring(edge) else { return };
-        (self.rings[ring].first, self.rings[ring].len) = (0, 1);
-        let only = self.at(ring, 0);
-        self.arena[only] = Parcel::new(mass_kg, t_a_k, t_b_k);
-    }
-
-    /// Arena index of the i-th parcel counted from an end.
-    #[inline]
-    fn nth_from(&self, ring: usize, port: Port, i: usize) -> usize {
-        match port {
-            Port::A => self.at(ring, i),
-            Port::B => self.at(ring, self.rings[ring].len as usize - 1 - i),
-        }
+        self.pool.replace(ring, Parcel::new(mass_kg, t_a_k, t_b_k));
     }
 
     /// Mean temperature of the `mass_kg` of water nearest to an end, K, when it leaves there: what is
@@ -186,8 +154,8 @@ impl Parcels {
         let Some(ring) = self.ring(edge) else { return f64::NAN };
         let (mut rest, mut excess, mut last) = (mass_kg, 0.0, f64::NAN);
         let mut passed = 1.0;
-        for i in 0..self.rings[ring].len as usize {
-            let parcel = self.arena[self.nth_from(ring, port, i)];
+        for i in 0..self.pool.len(ring) {
+            let parcel = self.pool.get(ring, self.pool.nth_from(ring, port, i));
             let part_kg = parcel.mass_kg.min(rest);
             let (near, far) = (parcel.end_k(port), parcel.end_k(port.opposite()));
             last = near + (far - near) * part_kg / parcel.mass_kg;
@@ -216,27 +184,22 @@ impl Parcels {
     }
 
     fn near_end(&self, ring: usize, port: Port) -> f64 {
-        self.arena[self.nth_from(ring, port, 0)].end_k(port)
+        self.pool.get(ring, self.pool.nth_from(ring, port, 0)).end_k(port)
     }
 
     /// Removes the `mass_kg` of water nearest to an end (less than the whole content).
     pub fn remove(&mut self, edge: usize, port: Port, mass_kg: f64) {
         let Some(ring) = self.ring(edge) else { return };
         let mut rest = mass_kg;
-        while self.rings[ring].len > 1 {
-            let index = self.nth_from(ring, port, 0);
-            let parcel = self.arena[index];
+        while self.pool.len(ring) > 1 {
+            let parcel = self.pool.get(ring, self.pool.nth_from(ring, port, 0));
             if parcel.mass_kg > rest {
                 break;
             }
             rest -= parcel.mass_kg;
-            if port == Port::A {
-                self.rings[ring].first = (self.rings[ring].first + 1) % PARCELS_PER_PIPE as u32;
-            }
-            self.rings[ring].len -= 1;
+            self.pool.pop(ring, port);
         }
-        let index = self.nth_from(ring, port, 0);
-        let parcel = &mut self.arena[index];
+        let parcel = self.pool.get_mut(ring, self.pool.nth_from(ring, port, 0));
         let share = rest / parcel.mass_kg;
         let cut = parcel.end_k(port) + (parcel.end_k(port.opposite()) - parcel.end_k(port)) * share;
         parcel.mass_kg -= rest;
@@ -262,9 +225,9 @@ impl Parcels {
             Port::B => (inner_k, outer_k),
         };
         let new = Parcel::new(mass_kg, t_a_k, t_b_k);
-        let neighbour = self.nth_from(ring, port, 0);
+        let neighbour = self.pool.nth_from(ring, port, 0);
         if mass_kg < ABSORBED_SHARE * content_kg {
-            let beside = &mut self.arena[neighbour];
+            let beside = self.pool.get_mut(ring, neighbour);
             let total_kg = beside.mass_kg + mass_kg;
             let shift = mass_kg / total_kg * (new.mean_k() - beside.mean_k());
             *beside = Parcel {
@@ -276,32 +239,22 @@ impl Parcels {
             return;
         }
         let (left, right) = match port {
-            Port::A => (new, self.arena[neighbour]),
-            Port::B => (self.arena[neighbour], new),
+            Port::A => (new, self.pool.get(ring, neighbour)),
+            Port::B => (self.pool.get(ring, neighbour), new),
         };
         let merged = merge(left, right);
         if merged.merged_k <= MERGE_TOLERANCE_K {
-            self.arena[neighbour] = merged;
+            *self.pool.get_mut(ring, neighbour) = merged;
             return;
         }
-        if self.rings[ring].len as usize == PARCELS_PER_PIPE {
-            self.merge_cheapest(ring);
-        }
-        let slots = PARCELS_PER_PIPE as u32;
-        if port == Port::A {
-            self.rings[ring].first = (self.rings[ring].first + slots - 1) % slots;
-        }
-        self.rings[ring].len += 1;
-        let index = self.nth_from(ring, port, 0);
-        self.arena[index] = new;
+        self.make_room(ring);
+        self.pool.push(ring, port, new);
     }
 
     /// Replaces the whole content by one parcel.
     pub fn replace(&mut self, edge: usize, mass_kg: f64, t_a_k: f64, t_b_k: f64) {
         let Some(ring) = self.ring(edge) else { return };
-        (self.rings[ring].first, self.rings[ring].len) = (0, 1);
-        let only = self.at(ring, 0);
-        self.arena[only] = Parcel::new(mass_kg, t_a_k, t_b_k);
+        self.pool.replace(ring, Parcel::new(mass_kg, t_a_k, t_b_k));
     }
 
     /// Lets all parcels of a pipe relax towards `surroundings_k` by the factor `decay`; returns
@@ -309,9 +262,8 @@ impl Parcels {
     pub fn relax(&mut self, edge: usize, surroundings_k: f64, decay: f64) -> f64 {
         let Some(ring) = self.ring(edge) else { return 0.0 };
         let mut lost = 0.0;
-        for i in 0..self.rings[ring].len as usize {
-            let index = self.at(ring, i);
-            let parcel = &mut self.arena[index];
+        for i in 0..self.pool.len(ring) {
+            let parcel = self.pool.get_mut(ring, i);
             let before = parcel.mean_k();
             parcel.t_a_k = surroundings_k + (parcel.t_a_k - surroundings_k) * decay;
             parcel.t_b_k = surroundings_k + (parcel.t_b_k - surroundings_k) * decay;
@@ -320,10 +272,13 @@ impl Parcels {
         lost
     }
 
-    /// Merges the pair of neighbours that changes least (error times mass).
-    fn merge_cheapest(&mut self, ring: usize) {
-        let len = self.rings[ring].len as usize;
-        let pair = |i: usize| (self.arena[self.at(ring, i)], self.arena[self.at(ring, i + 1)]);
+    /// Merges the pair of neighbours that changes least (error times mass) in a full pipe.
+    fn make_room(&mut self, ring: usize) {
+        let len = self.pool.len(ring);
+        if len < PARCELS_PER_PIPE {
+            return;
+        }
+        let pair = |i: usize| (self.pool.get(ring, i), self.pool.get(ring, i + 1));
         let cost = |i: usize| {
             let (left, right) = pair(i);
             merge(left, right).merged_k * (left.mass_kg + right.mass_kg)
@@ -336,13 +291,8 @@ impl Parcels {
             }
         }
         let (left, right) = pair(best);
-        let target = self.at(ring, best);
-        self.arena[target] = merge(left, right);
-        for i in best + 1..len - 1 {
-            let (to, from) = (self.at(ring, i), self.at(ring, i + 1));
-            self.arena[to] = self.arena[from];
-        }
-        self.rings[ring].len -= 1;
+        *self.pool.get_mut(ring, best) = merge(left, right);
+        self.pool.remove(ring, best + 1);
     }
 }
 
@@ -374,11 +324,7 @@ mod tests {
     use super::*;
 
     fn parcels() -> Parcels {
-        Parcels {
-            arena: vec![Parcel::default(); PARCELS_PER_PIPE],
-            rings: vec![Ring { start: 0, first: 0, len: 1 }],
-            ring_of_edge: vec![0],
-        }
+        Parcels { pool: Pool::new(&[Parcel::new(1.0, 300.0, 300.0)]), ring_of_edge: vec![0] }
     }
 
     fn content(parcels: &Parcels) -> (f64, f64) {

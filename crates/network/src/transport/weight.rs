@@ -14,7 +14,8 @@
 //!
 //! **Sources** `kell1975`.
 
-use super::{Transport, plug_flow};
+use super::Transport;
+use super::plug_flow::mean_decay;
 use crate::graph::Network;
 use crate::state::NetworkState;
 use crate::two_port::EdgeThermal;
@@ -38,7 +39,7 @@ impl NetworkState {
     /// Mean temperature of the water in an edge, K.
     pub(super) fn content_k(&self, network: &Network, i: usize) -> f64 {
         match network.edges[i].element.thermal() {
-            EdgeThermal::PlugFlow(_) => self.parcels.mean_k(i).unwrap_or(self.t_edge_k[i]),
+            EdgeThermal::PlugFlow(_) => self.pipe_mean_k(i).unwrap_or(self.t_edge_k[i]),
             EdgeThermal::Pass | EdgeThermal::Exchanger(_) => self.t_edge_k[i],
         }
     }
@@ -92,7 +93,7 @@ impl Transport {
                     return pipe.loss_time_constant_s.is_finite().then_some(around_k);
                 }
                 let t_in_k = self.t_mean_k[edge.upstream(m).index()];
-                Some(plug_flow::steady_mean_k(&pipe, m, t_in_k, around_k))
+                Some(around_k + (t_in_k - around_k) * mean_decay(pipe.steady_ntu(m)))
             }
             EdgeThermal::Exchanger(_) if !standing => Some(state.t_edge_k[i]),
             EdgeThermal::Exchanger(_) => self.other_stream_k(network, state, i),

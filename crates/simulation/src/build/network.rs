@@ -93,7 +93,7 @@ impl Builder<'_> {
         let mut state = NetworkState::new(network, self.model.run.initial_k);
         for (i, spec) in self.model.edges.iter().enumerate() {
             if let ElementParams::Pipe(PipeParams { initial_k: Some(t_k), .. }) = &spec.params {
-                state.parcels.fill(i, *t_k);
+                state.fill_pipe(i, *t_k);
             }
         }
         // A cold solve starts from the pressure level of the model.

@@ -85,6 +85,7 @@ impl Simulation {
             && own.network.p_pa.len() == other.network.p_pa.len()
             && own.network.requests.len() == other.network.requests.len()
             && own.network.parcels.fits(&other.network.parcels)
+            && own.network.cells.fits(&other.network.cells)
             && own.unit_states.len() == other.unit_states.len()
             && own.controller_states.len() == other.controller_states.len()
             && own.network.density_kg_m3.len() == other.network.density_kg_m3.len()

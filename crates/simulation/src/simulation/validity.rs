@@ -23,7 +23,9 @@ impl Simulation {
             return Err(self.left(time, name, state.t_secondary_k[port]));
         }
         for (i, _) in state.surroundings_k.iter().enumerate().filter(|(_, t_k)| !liquid(t_k)) {
-            let mut ends = state.parcels.iter(i).flat_map(|parcel| [parcel.t_a_k, parcel.t_b_k]);
+            let ends = state.parcels.iter(i).flat_map(|parcel| [parcel.t_a_k, parcel.t_b_k]);
+            let cells = state.cells.water(i).into_iter().flatten().map(|(_, t_k)| t_k);
+            let mut ends = ends.chain(cells);
             if let Some(t_k) = ends.find(|t_k| !liquid(t_k)) {
                 return Err(self.left(time, &plan.edge_names[i], t_k));
             }
