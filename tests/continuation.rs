@@ -140,7 +140,10 @@ fn neutral_changes_leave_the_model_identical() {
     let neutral = [
         Change::Scale { parameter: "sf1-sf2.hot.length_m".into(), factor: 1.0 },
         Change::Scale { parameter: "sf1.unit.v_flow_m3_s".into(), factor: 1.0 },
-        Change::Set { parameter: "ground.temperature_k".into(), value: json!(model.ground_k) },
+        Change::Set {
+            parameter: "ground.temperature_k".into(),
+            value: json!(model.ground.temperature_k),
+        },
         Change::ReplaceElement { edge: "sf1-sf2.hot".into(), params: pipe },
         Change::WrapLaw { edge: "sf2.feed_in_pump".into(), loss_factor: 1.0 },
     ];

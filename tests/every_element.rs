@@ -256,6 +256,7 @@ fn solved(nodes: usize, parts: &[Part]) -> Result<(Vec<f64>, Vec<f64>), String> 
         ports: Vec::new(),
         prescriptions: Vec::new(),
         couplings: Vec::new(),
+        soil: Vec::new(),
     };
     if let Some(problem) = network.problems().first() {
         return Err(format!("{problem:?}"));

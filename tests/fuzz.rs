@@ -81,6 +81,10 @@ const FRAGMENTS: &[&str] = &[
     "[station_type.house]\nkind = \"consumer\"\nstub = { pipe = \"dn20\" }\nunit = { kind = \"heat_load\", \
      load_kw = 2, return_degc = 30 }\n[[station]]\nsite = \"sf2\"\nname = \"flat\"\ntype = \"house\"\n",
     "[network]\nnodes = \"nodes.csv\"\npipes = 7\nlines = [\"hot\"]\n",
+    "[pipe_type.house]\npipe = \"pre-insulated DN25 series 2\"\ndepth_m = 0.6\n[[edge]]\nid = \"hot\"\n\
+     kind = \"pipe\"\nfrom = \"sf1.hot\"\nto = \"sf2.hot\"\nlength_m = 20\npipe = \"house\"\n\
+     spacing_m = 0.3\ncompanion = \"cold\"\n[[edge]]\nid = \"cold\"\nkind = \"pipe\"\n\
+     from = \"sf1.cold\"\nto = \"sf2.cold\"\nlength_m = 20\npipe = \"PE100 SDR11 40\"\n",
     "[[series]]\nfile = \"nowhere.csv\"\ncolumn = \"x\"\nsignal = \"ground.temperature_k\"\n",
 ];
 

@@ -113,3 +113,13 @@ fn closed_loops_in_long_steps() {
         assert!(overrun(&id), "{id} holds more than passes in a step");
     }
 }
+
+#[test]
+fn ground_that_follows_the_year_and_soil_that_stores() {
+    let text = "format = 1\n[run]\nstart = \"2024-01-17T00:00:00Z\"\n[ground]\nkind = \"kusuda\"\n\
+        [[node]]\nid = \"in\"\nkind = \"source\"\nm_flow_kg_s = 0.2\n[[node]]\nid = \"out\"\n\
+        kind = \"pressure_boundary\"\npressure_bar = 1\n[[edge]]\nid = \"pipe\"\nkind = \"pipe\"\n\
+        from = \"in\"\nto = \"out\"\nlength_m = 100\npipe = \"PE100 SDR11 63\"\ndepth_m = 1.5\n\
+        soil_rings = 3\n";
+    assert_no_allocation(&mut simulation(&model(text)), &[], (50, 200), 600);
+}

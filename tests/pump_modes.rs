@@ -57,6 +57,7 @@ fn network(nodes: usize, parts: &[(usize, usize, ElementParams)]) -> Network {
         ports: Vec::new(),
         prescriptions: Vec::new(),
         couplings: Vec::new(),
+        soil: Vec::new(),
     }
 }
 

@@ -182,6 +182,7 @@ impl Sample {
             ports: Vec::new(),
             prescriptions: Vec::new(),
             couplings: Vec::new(),
+            soil: Vec::new(),
         };
         let exchangers = (0..self.edges.len())
             .filter(|&i| matches!(self.edges[i].params, ElementParams::HeatExchanger(_)));

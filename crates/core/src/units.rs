@@ -55,8 +55,8 @@ pub const UNITS: &[Unit] = &[
 
 /// SI suffixes that occur in names, longest first where one ends in another.
 pub const SI_SUFFIXES: &[&str] = &[
-    "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "kg_m3", "w_m2_k", "m3_s", "m2_s", "m_s", "kg_s", "pa_s",
-    "w_k", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
+    "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "kg_m3", "m2_k_w", "w_m2_k", "m3_s", "m2_s", "m_s",
+    "kg_s", "pa_s", "w_k", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
 ];
 
 impl Unit {
@@ -89,10 +89,14 @@ pub fn split_suffix(name: &str) -> Option<(&str, &str)> {
         .find(|(stem, suffix)| !stem.is_empty() && known(suffix))
 }
 
-/// Units a value of SI suffix `si` can also be written in. A temperature difference has none:
-/// `difference` names a field whose kelvin must not be read as degC.
+/// Whether the kelvin of a quantity are those of a difference, which must not be read as degC.
+pub fn is_difference(stem: &str) -> bool {
+    stem.ends_with("difference") || stem.ends_with("amplitude")
+}
+
+/// Units a value of SI suffix `si` can also be written in. A temperature difference has none.
 pub fn alternatives(name: &str) -> impl Iterator<Item = (String, Unit)> + '_ {
-    let split = split_suffix(name).filter(|(stem, _)| !stem.ends_with("difference"));
+    let split = split_suffix(name).filter(|(stem, _)| !is_difference(stem));
     UNITS.iter().filter_map(move |unit| {
         let (stem, si) = split?;
         (unit.si == si).then(|| (format!("{stem}_{}", unit.suffix), *unit))
@@ -133,5 +137,10 @@ mod tests {
         assert_eq!(split_suffix("opening"), None);
         assert!(alternatives("supply_k").any(|(name, _)| name == "supply_degc"));
         assert_eq!(alternatives("temperature_difference_k").count(), 0);
+        assert_eq!(alternatives("amplitude_k").count(), 0);
+        assert_eq!(
+            split_suffix("surface_resistance_m2_k_w"),
+            Some(("surface_resistance", "m2_k_w"))
+        );
     }
 }

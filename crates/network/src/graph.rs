@@ -6,6 +6,7 @@
 //! pressure boundary (open ends, reservoirs), not both.
 
 use crate::elements::Element;
+use crate::soil::SoilRings;
 use crate::two_port::{Characteristic, EdgeState};
 use crate::well_posed::{Equation, Unknown};
 use anergy_core::ids::{EdgeId, NodeId};
@@ -101,6 +102,8 @@ pub struct Network {
     pub prescriptions: Vec<Prescription>,
     /// Pipes that lie side by side and exchange heat.
     pub couplings: Vec<Coupling>,
+    /// Soil around pipes that stores heat.
+    pub soil: Vec<SoilRings>,
 }
 
 /// Two pipes side by side and the heat conductance between their contents.

@@ -4,14 +4,18 @@
 //! [`graph::Edge`]s (mass flow). [`hydraulics`] solves pressures and flows, [`transport`] carries
 //! temperatures, [`interface`] couples thermal-only units to edges.
 
+pub mod buried_pipe;
 pub mod effectiveness;
 pub mod elements;
 pub mod film;
 pub mod friction;
 pub mod graph;
+pub mod ground;
 pub mod holding;
 pub mod hydraulics;
 pub mod interface;
+pub mod pipe_catalogue;
+pub mod soil;
 pub mod state;
 pub mod transport;
 pub mod two_port;

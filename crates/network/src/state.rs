@@ -1,6 +1,7 @@
 //! Everything of a network that changes during a run: plain data, cloned by a snapshot.
 
 use crate::graph::{Network, NodeKind};
+use crate::soil::SoilRings;
 use crate::transport::cells::Cells;
 use crate::transport::parcels::Parcels;
 use crate::two_port::{EdgeState, EdgeThermal};
@@ -66,6 +67,12 @@ pub struct NetworkState {
     pub parcels: Parcels,
     /// Content of the other pipes.
     pub cells: Cells,
+    /// Temperature of the rings of soil of all pipes that have some, innermost first, K.
+    pub(crate) soil_k: Vec<f64>,
+    /// Temperature of the ground beyond the rings of each such pipe, K.
+    pub(crate) soil_ground_k: Vec<f64>,
+    /// Heat from the rings of each such pipe to the ground, W (mean of the step).
+    pub q_ground_w: Vec<f64>,
 }
 
 /// Properties of the water in an edge.
@@ -141,6 +148,9 @@ impl NetworkState {
             ],
             parcels: Parcels::new(network, initial_k),
             cells: Cells::new(network, initial_k),
+            soil_k: vec![initial_k; network.soil.iter().map(SoilRings::count).sum()],
+            soil_ground_k: vec![initial_k; network.soil.len()],
+            q_ground_w: vec![0.0; network.soil.len()],
         }
     }
 
@@ -327,6 +337,7 @@ mod tests {
             ports: vec![],
             prescriptions: vec![],
             couplings: vec![],
+            soil: vec![],
         };
         // After the rise time x = 5/sqrt(sqrt 2 - 1) = 7.769: 1 - (1 + x) e^-x = 0.99630
         let run = |steps: i32| {

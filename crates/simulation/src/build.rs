@@ -1,6 +1,7 @@
 //! From names to ids: a model becomes a plan, or all its problems are reported.
 
 mod commands;
+mod losses;
 mod meters;
 mod network;
 mod prescribed;
@@ -14,7 +15,6 @@ use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
 use crate::plan::{Plan, PlannedUnit, WorstPoint};
 use crate::state::{Reading, State};
-use crate::temperatures::SURROUNDINGS;
 use crate::wording::refused;
 use anergy_core::clock::Time;
 use anergy_core::ids::{EdgeId, SignalId};
@@ -25,7 +25,7 @@ use anergy_network::graph::Network;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::{Station, StationState};
 use network::pipes;
-use signals::{Writer, free_signal, temperature_signal};
+use signals::{Writer, free_signal};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -122,7 +122,7 @@ impl Builder<'_> {
             model.edges.iter().enumerate().map(|(i, edge)| (edge.id.as_str(), i)).collect();
         let mut nodes = self.nodes();
         self.references(&mut nodes, &node_ids);
-        let edges = self.edges(&node_ids, &edge_ids);
+        let (edges, couplings, soil) = self.edges(&node_ids, &edge_ids);
         let ports = self.ports(&edge_ids);
         let whole = edges.len() == model.edges.len();
         let prescriptions =
@@ -134,22 +134,22 @@ impl Builder<'_> {
             edges,
             ports,
             prescriptions,
-            couplings: Vec::new(),
+            couplings,
+            soil,
         };
         if whole && self.problems.is_empty() {
             self.check_graph(&network);
         }
         let mut signals = SignalTable::default();
-        let ground = temperature_signal("ground.temperature_k", model.ground_k, &SURROUNDINGS);
-        let ground = self.add_signal(&mut signals, ground, &Place::default());
+        let mut writers: HashMap<SignalId, Writer> = HashMap::new();
+        let (ground, by_depth, seasonal_ground) = self.ground_signals(&mut signals, &mut writers);
         let node_inputs = self.node_signals(&mut signals);
         let mut commands = if whole {
             self.edge_signals(&network, &mut signals)
         } else {
             vec![None; model.edges.len()]
         };
-        let surroundings = self.surroundings(&mut signals, ground);
-        let mut writers: HashMap<SignalId, Writer> = HashMap::new();
+        let surroundings = self.surroundings(&mut signals, ground, &by_depth);
         let units = self.units(&edge_ids, &network, &commands, &mut signals, &mut writers);
         let stations = self.stations(&edge_ids);
         let worst_points = self.worst_points(&node_ids);
@@ -177,6 +177,7 @@ impl Builder<'_> {
             // Controllers measure channels, which need a sound plan.
             return None;
         }
+        let soil_step = network.soil.iter().filter_map(|s| Time::from_s(s.longest_step_s())).min();
         let vessels = self.vessels(&network, &node_ids);
         let pressure_watches = self.pressure_watches(&network, &node_ids);
         let meters = self.meters(&node_ids);
@@ -203,6 +204,7 @@ impl Builder<'_> {
             commands,
             node_inputs,
             ground,
+            seasonal_ground,
             surroundings,
             initial,
             channels: Vec::new(),
@@ -214,6 +216,7 @@ impl Builder<'_> {
             step: steps.0,
             record: steps.1,
             until: steps.2,
+            soil_step,
             network,
         };
         (plan.channels, plan.sources) = channels::channels(&plan);

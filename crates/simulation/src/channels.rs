@@ -44,6 +44,10 @@ pub enum Source {
     PipeLost(usize),
     /// Change of the heat that a pipe holds, J.
     PipeStored(usize),
+    /// Innermost ring of the soil around a pipe, K.
+    Soil(usize),
+    /// Heat from the soil around a pipe to the ground, W.
+    SoilLoss(usize),
     /// Heat taken up by an edge, W.
     EdgeHeat(usize),
     /// Temperature of the volume of an edge, K.
@@ -116,6 +120,11 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     }
     for (i, name) in plan.edge_names.iter().enumerate() {
         edge_channels(&mut list, plan, i, name);
+    }
+    for (i, soil) in plan.network.soil.iter().enumerate() {
+        let name = &plan.edge_names[soil.edge.index()];
+        list.add(ChannelGroup::Edges, name, "soil_k", "K", Source::Soil(i));
+        list.add(ChannelGroup::Edges, name, "q_ground_w", "W", Source::SoilLoss(i));
     }
     for (i, meter) in plan.meters.iter().enumerate() {
         let name = &plan.edge_names[meter.edge];
@@ -276,6 +285,8 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::EdgeLoss(i) => network.q_loss_w[i],
         Source::PipeLost(pipe) => state.pipes.get(pipe).map_or(0.0, |pipe| pipe.lost_j),
         Source::PipeStored(pipe) => stored_j(plan, state, pipe),
+        Source::Soil(i) => network.ring_k(&plan.network.soil[i]),
+        Source::SoilLoss(i) => network.q_ground_w[i],
         Source::EdgeHeat(i) => heat(i),
         Source::EdgeVolume(i) => network.t_edge_k[i],
         Source::StationFlow(i) => plan.stations[i].m_flow_kg_s(network),

@@ -73,6 +73,18 @@ impl Model {
                 report(format!("isolate: boundary \"{}\" needs as many values as times", cut.node));
             }
         }
+        for edge in &model.edges {
+            let ElementParams::Pipe(pipe) = &edge.params else { continue };
+            if let Some(other) = pipe.companion.as_deref().filter(|id| !wanted.contains(id)) {
+                report(format!("isolate: \"{}\" lies beside \"{other}\": take both", edge.id));
+            }
+        }
+        for edge in self.edges.iter().filter(|edge| !wanted.contains(edge.id.as_str())) {
+            let ElementParams::Pipe(pipe) = &edge.params else { continue };
+            if let Some(other) = pipe.companion.as_deref().filter(|id| wanted.contains(id)) {
+                report(format!("isolate: \"{other}\" lies beside \"{}\": take both", edge.id));
+            }
+        }
         if !problems.is_empty() {
             return Err(Diagnostics(problems));
         }

@@ -6,8 +6,8 @@
 use crate::diagnostic::Diagnostics;
 use crate::effect::EffectSpec;
 use crate::model_file::{
-    InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry, RunEntry,
-    WorstPointEntry,
+    GroundEntry, InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry,
+    RunEntry, WorstPointEntry,
 };
 use crate::table::Tables;
 use anergy_control::controllers::ControllerParams;
@@ -225,8 +225,10 @@ pub struct Model {
     pub thermosiphon: bool,
     /// Whether friction warms the water.
     pub dissipation: bool,
-    /// Temperature around the pipes, K.
-    pub ground_k: f64,
+    /// What the pipes lie in.
+    pub ground: GroundEntry,
+    /// Where it stands.
+    pub ground_place: Place,
     /// Nodes.
     pub nodes: Vec<NodeSpec>,
     /// Edges.

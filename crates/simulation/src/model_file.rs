@@ -6,6 +6,7 @@
 mod duration;
 pub mod expand;
 mod fluid;
+mod ground;
 mod nodes;
 mod plant;
 pub mod read;
@@ -16,6 +17,7 @@ mod three_way_valve;
 
 pub use duration::Duration;
 pub use fluid::{FluidEntry, FluidKind};
+pub use ground::{GroundEntry, GroundKind};
 pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use tables::NetworkEntry;
@@ -89,19 +91,6 @@ fn ten_seconds() -> Duration {
 
 fn twenty_degc() -> f64 {
     293.15
-}
-
-/// `[ground]`: what surrounds the pipes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct GroundEntry {
-    /// Temperature, K; also the signal `ground.temperature_k`.
-    #[serde(default = "twelve_degc")]
-    pub temperature_k: f64,
-}
-
-fn twelve_degc() -> f64 {
-    285.15
 }
 
 /// `[[site]]`: a place with a node on each line.

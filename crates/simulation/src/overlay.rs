@@ -3,6 +3,7 @@
 //! An overlay names a component and what to change; its neutral value leaves the model identical.
 
 use crate::model::{DriverSpec, EdgeSpec, Model, Place};
+use crate::model_file::GroundEntry;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
@@ -225,9 +226,11 @@ impl Model {
                 deserialized(parameter, EquipmentParams::deserialize(unit.params.kind(), value))?;
             return Ok(());
         }
-        if parameter == "ground.temperature_k" {
-            let value = new(&Value::from(self.ground_k)).and_then(|value| value.as_f64());
-            self.ground_k = value.ok_or_else(unknown)?;
+        if component == "ground" && self.ground.has(field) {
+            let schema = schemars::schema_for!(GroundEntry);
+            let ground = serde_json::json!(self.ground);
+            let value = changed(parameter, field, ground, Some(&schema), new)?;
+            self.ground = deserialized(parameter, Some(serde_json::from_value(value)))?;
             return Ok(());
         }
         Err(unknown())

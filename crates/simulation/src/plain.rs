@@ -4,7 +4,8 @@
 use crate::diagnostic::Diagnostics;
 use crate::document::to_toml;
 use crate::model::{Model, Place};
-use crate::model_file::FluidEntry;
+use crate::model_file::{FluidEntry, GroundEntry};
+use anergy_network::elements::ElementParams;
 use serde_json::{Map, Value, json};
 
 impl Model {
@@ -25,7 +26,7 @@ impl Model {
         file.insert("model".into(), about);
         file.insert("run".into(), without_nulls(json!(self.run)));
         file.insert("fluid".into(), FluidEntry::of(&self.medium, self.follow_temperature));
-        file.insert("ground".into(), json!({ "temperature_k": self.ground_k }));
+        file.insert("ground".into(), self.plain_ground());
         let mut section = |name: &str, entries: Vec<Value>| {
             if !entries.is_empty() {
                 file.insert(name.into(), entries.into_iter().map(without_nulls).collect());
@@ -127,12 +128,36 @@ impl Model {
         to_toml(&file)
     }
 
+    /// The ground, with the fields of its kind.
+    fn plain_ground(&self) -> Value {
+        let mut ground = json!(self.ground);
+        if let Some(fields) = ground.as_object_mut() {
+            fields.retain(|field, _| self.ground.has(field));
+        }
+        ground
+    }
+
     /// Every value that was not given: component, field, value and where it comes from.
     pub fn defaults(&self) -> Vec<DefaultValue> {
         let mut defaults = Vec::new();
+        let schema = schemars::schema_for!(GroundEntry);
+        collect(&mut defaults, "ground", &self.plain_ground(), Some(schema), &self.ground_place);
+        defaults.retain(|default| self.ground.has(&default.field));
+        for default in &mut defaults {
+            default.source = GroundEntry::source(&default.field);
+        }
         for edge in &self.edges {
-            let schema = anergy_network::elements::ElementParams::schema(edge.params.kind());
+            let schema = ElementParams::schema(edge.params.kind());
+            let first = defaults.len();
             collect(&mut defaults, &edge.id, &edge.params.to_value(), schema, &edge.place);
+            if let ElementParams::Pipe(pipe) = &edge.params {
+                for (field, value, source) in pipe.layer_defaults(&self.ground.ground()) {
+                    let own = defaults[first..].iter_mut().find(|default| default.field == field);
+                    if let Some(default) = own {
+                        (default.value, default.source) = (json!(value), source);
+                    }
+                }
+            }
         }
         for unit in &self.units {
             let schema = anergy_prosumer::equipment::EquipmentParams::schema(unit.params.kind());

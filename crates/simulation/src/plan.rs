@@ -10,6 +10,7 @@ use anergy_core::recorder::{Channel, NetworkMap};
 use anergy_core::signal::SignalTable;
 use anergy_network::elements::Element;
 use anergy_network::graph::Network;
+use anergy_network::ground::Seasons;
 use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
@@ -91,6 +92,15 @@ pub(crate) enum Limit {
     VesselEmpty,
 }
 
+/// Ground that follows the year: its signal at each depth.
+#[derive(Debug, Clone)]
+pub(crate) struct SeasonalGround {
+    pub seasons: Seasons,
+    /// Start of the run, s after New Year.
+    pub start_s: f64,
+    pub at_depths: Vec<(SignalId, f64)>,
+}
+
 /// Everything that does not change during a run.
 #[derive(Debug)]
 pub struct Plan {
@@ -116,6 +126,7 @@ pub struct Plan {
     pub(crate) commands: Vec<Option<SignalId>>,
     pub(crate) node_inputs: Vec<NodeInputs>,
     pub(crate) ground: SignalId,
+    pub(crate) seasonal_ground: Option<SeasonalGround>,
     /// Signal with the temperature around each edge.
     pub(crate) surroundings: Vec<(SignalId, f64)>,
     pub(crate) initial: State,
@@ -128,6 +139,8 @@ pub struct Plan {
     pub(crate) step: Time,
     pub(crate) record: Time,
     pub(crate) until: Time,
+    /// The longest step that the soil around the pipes takes.
+    pub(crate) soil_step: Option<Time>,
 }
 
 impl Plan {

@@ -76,8 +76,10 @@ impl Simulation {
         for driver in &self.plan.drivers {
             self.state.signals[driver.signal.index()] = driver.value_at(Time::ZERO);
         }
+        self.follow_seasons(Time::ZERO);
         self.request_units();
         self.apply_inputs();
+        self.state.network.rest_soil(&self.plan.network.soil);
         self.fill_vessels();
         self.solve_hydraulics()?;
         self.settle_heads()?;
@@ -101,6 +103,7 @@ impl Simulation {
         self.transport
             .advance(&self.plan.network, &mut self.state.network, dt_s)
             .map_err(|source| RunError::Singular { time: now.to_string(), source })?;
+        self.state.network.advance_soil(&self.plan.network.soil, dt_s);
         self.advance_units(dt_s);
         self.watch_stations(end, dt_s);
         self.book(dt_s);
@@ -121,6 +124,9 @@ impl Simulation {
         while self.state.time < target {
             let now = self.state.time;
             let mut end = target.min(now.next_multiple(largest_step));
+            if let Some(longest) = self.plan.soil_step {
+                end = end.min(now + longest);
+            }
             for driver in &self.plan.drivers {
                 end = end.min(driver.next_breakpoint(now));
             }
@@ -172,9 +178,22 @@ impl Simulation {
 
     /// Schedules and series write their signals.
     fn drive_inputs(&mut self, end: Time) {
+        self.follow_seasons(end);
         for driver in &self.plan.drivers {
             if !self.state.taken_over[driver.signal.index()] {
                 self.state.signals[driver.signal.index()] = driver.value_until(end);
+            }
+        }
+    }
+
+    /// The ground follows the year: evaluated once per step at its end, at each depth.
+    fn follow_seasons(&mut self, time: Time) {
+        let Some(ground) = &self.plan.seasonal_ground else { return };
+        for (signal, depth_m) in &ground.at_depths {
+            if !self.state.taken_over[signal.index()] {
+                let new_year_s = ground.start_s + time.as_s();
+                self.state.signals[signal.index()] =
+                    ground.seasons.temperature_k(*depth_m, new_year_s);
             }
         }
     }
@@ -215,6 +234,7 @@ impl Simulation {
         {
             *around = signals[id.index()] + difference_k;
         }
+        self.state.network.see_soil(&self.plan.network.soil);
     }
 
     pub(crate) fn solve_hydraulics(&mut self) -> Result<HydraulicReport, RunError> {
@@ -318,6 +338,7 @@ impl Simulation {
         self.transport
             .settle(&self.plan.network, &mut self.state.network)
             .map_err(|source| RunError::Singular { time: "steady state".into(), source })?;
+        self.state.network.settle_soil(&self.plan.network.soil);
         self.advance_units(0.0);
         self.read_meters(0.0);
         self.hold_pressures(0.0);

@@ -4,6 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::Place;
 use crate::wording::refused;
 use anergy_core::medium::{Medium, ZERO_CELSIUS_K};
+use anergy_core::units::is_difference;
 
 /// A range of temperatures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +66,7 @@ impl Temperatures {
         let inside = |t_k: f64| (min_k..=max_k).contains(&t_k);
         let written = place.fields.iter().find(|written| written.si == field)?;
         let value = written.value.as_f64()?;
-        let stem = field.strip_suffix("_k").filter(|stem| !stem.ends_with("difference"))?;
+        let stem = field.strip_suffix("_k").filter(|stem| !is_difference(stem))?;
         let celsius = written.name.ends_with("_degc");
         let (unit, other, other_k) =
             if celsius { ("degC", "k", value) } else { ("K", "degc", value + ZERO_CELSIUS_K) };

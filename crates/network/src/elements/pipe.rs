@@ -13,11 +13,14 @@
 //!
 //! **Sources** `licklederer2021`, `wetter2014`, `rossman2020`.
 
+mod laying;
+mod power_law;
 pub mod thermal;
 
 use self::thermal::WallModel;
-use crate::friction::{Correlation, DarcyFriction, PowerFriction, RE_LAMINAR, Transition};
+use crate::friction::{Correlation, DarcyFriction, RE_LAMINAR, Transition};
 use crate::graph::GRAVITY_M_S2;
+use crate::ground::Ground;
 use crate::two_port::{
     Characteristic, EdgeState, EdgeThermal, ElementError, PlugFlowPipe, TwoPort, not_negative,
     positive,
@@ -28,6 +31,8 @@ use anergy_core::numerics::regularize::{power, quadratic};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+
+pub use laying::{FOAM_W_M_K, Laying, POLYETHYLENE_W_M_K, Resistance, STEEL_W_M_K};
 
 /// Below this velocity a power law is regularised.
 const POWER_LAW_VELOCITY_M_S: f64 = 1e-3;
@@ -97,6 +102,51 @@ pub struct PipeParams {
     /// Multiplies the heat loss while the water stands still.
     #[serde(default = "one")]
     pub standstill_loss_factor: f64,
+    /// How it lies: its heat loss then follows from its layers, in place of
+    /// `insulation_resistance_k_m_w`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub laying: Option<Laying>,
+    /// Thermal conductivity of the wall, W/(m K). Absent: 50, steel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_conductivity_w_m_k: Option<f64>,
+    /// Outer diameter of the casing around the insulation, m. Absent, without `insulation_thickness_m`: no
+    /// insulation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub casing_diameter_m: Option<f64>,
+    /// Wall thickness of the casing (PE), m. Absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub casing_thickness_m: Option<f64>,
+    /// Thickness of the insulation, m, instead of `casing_diameter_m`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub insulation_thickness_m: Option<f64>,
+    /// Thermal conductivity of the insulation, W/(m K). Absent: 0.028, polyurethane foam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub insulation_conductivity_w_m_k: Option<f64>,
+    /// Heat transfer from water to wall, W/(m2 K). Absent: 3500.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub film_w_m2_k: Option<f64>,
+    /// Depth of the axis below the ground, m; of a twin pipe that of its casing. Absent: that of `[ground]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_m: Option<f64>,
+    /// Distance of the axes of this pipe and its companion, m: they exchange heat. The two lines of a trench
+    /// are companions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacing_m: Option<f64>,
+    /// The pipe beside it, by name; given on one of the two.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub companion: Option<String>,
+    /// Whether port a of the companion lies beside port b.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub companion_reversed: Option<bool>,
+    /// Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub soil_rings: Option<usize>,
+    /// Wind across a pipe in the air, m/s. Absent: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wind_m_s: Option<f64>,
+    /// Heat transfer from jacket to air, W/(m2 K). Absent: radiation and wind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outer_film_w_m2_k: Option<f64>,
     /// Temperature around the pipe, K. Absent: the ground temperature of the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings_k: Option<f64>,
@@ -152,6 +202,20 @@ impl Default for PipeParams {
             wall_film_factor: one(),
             dispersion_m2_s: 0.0,
             standstill_loss_factor: one(),
+            laying: None,
+            wall_conductivity_w_m_k: None,
+            casing_diameter_m: None,
+            casing_thickness_m: None,
+            insulation_thickness_m: None,
+            insulation_conductivity_w_m_k: None,
+            film_w_m2_k: None,
+            depth_m: None,
+            spacing_m: None,
+            companion: None,
+            companion_reversed: None,
+            soil_rings: None,
+            wind_m_s: None,
+            outer_film_w_m2_k: None,
             surroundings_k: None,
             surroundings_difference_k: 0.0,
             initial_k: None,
@@ -185,11 +249,26 @@ pub struct Pipe {
 }
 
 impl PipeParams {
-    /// The runtime pipe.
+    /// The runtime pipe, alone in ordinary ground.
     ///
     /// # Errors
     /// Names the field that is out of range.
     pub fn build(&self, medium: &Medium) -> Result<Pipe, ElementError> {
+        positive("inner_diameter_m", self.inner_diameter_m)?;
+        let resistance = self.resistance(&Ground::default())?;
+        self.build_with(medium, resistance.map(|alone| alone.total_k_m_w()))
+    }
+
+    /// The runtime pipe with a thermal resistance from water to surroundings per length, K m/W; `None`
+    /// loses no heat.
+    ///
+    /// # Errors
+    /// Names the field that is out of range.
+    pub fn build_with(
+        &self,
+        medium: &Medium,
+        resistance_k_m_w: Option<f64>,
+    ) -> Result<Pipe, ElementError> {
         let length_m = positive("length_m", self.length_m)?;
         let diameter_m = positive("inner_diameter_m", self.inner_diameter_m)?;
         not_negative("zeta", self.zeta)?;
@@ -252,36 +331,9 @@ impl PipeParams {
             re_m,
             friction_per_m4,
             fittings_per_m4,
-            thermal: self.thermal(medium, m_flow_nominal_kg_s)?,
+            thermal: self.thermal(medium, m_flow_nominal_kg_s, resistance_k_m_w)?,
             m_flow_nominal_kg_s,
         })
-    }
-
-    /// The power law, with exactly the coefficient that it needs.
-    fn power_friction(&self, diameter_m: f64) -> Result<Option<PowerFriction>, ElementError> {
-        let problem = |problem: &str| Err(ElementError::Fields { problem: problem.into() });
-        if self.transition == Transition::Dunlop && self.friction != Correlation::SwameeJain {
-            return problem("transition = \"dunlop\" needs friction = \"swamee_jain\"");
-        }
-        match (self.friction, self.hazen_williams_c, self.manning_n) {
-            (Correlation::HazenWilliams, Some(c), None) => {
-                let c = positive("hazen_williams_c", c)?;
-                Ok(Some(PowerFriction::hazen_williams(c, diameter_m)))
-            }
-            (Correlation::ChezyManning, None, Some(n)) => {
-                let n = positive("manning_n", n)?;
-                Ok(Some(PowerFriction::chezy_manning(n, diameter_m)))
-            }
-            (Correlation::HazenWilliams, ..) => {
-                problem("friction = \"hazen_williams\" needs hazen_williams_c and no manning_n")
-            }
-            (Correlation::ChezyManning, ..) => {
-                problem("friction = \"chezy_manning\" needs manning_n and no hazen_williams_c")
-            }
-            (_, None, None) => Ok(None),
-            (_, Some(_), _) => problem("hazen_williams_c needs friction = \"hazen_williams\""),
-            (_, None, Some(_)) => problem("manning_n needs friction = \"chezy_manning\""),
-        }
     }
 }
 

@@ -54,6 +54,7 @@ impl Rig {
             ports: vec![],
             prescriptions: vec![],
             couplings: couplings.to_vec(),
+            soil: vec![],
         };
         let mut state = NetworkState::new(&network, initial_k);
         state.surroundings_k.fill(280.0);

@@ -22,7 +22,8 @@ impl Model {
     pub(super) fn known_parameters(&self) -> Vec<(String, Value)> {
         let edges = self.model.edges.iter().map(|edge| (&edge.id, edge.params.to_value()));
         let units = self.model.units.iter().map(|unit| (&unit.id, unit.params.to_value()));
-        let mut known = vec![("ground.temperature_k".to_owned(), json!(self.model.ground_k))];
+        let mut known =
+            vec![("ground.temperature_k".to_owned(), json!(self.model.ground.temperature_k))];
         for (id, values) in edges.chain(units) {
             if let Value::Object(values) = values {
                 known.extend(

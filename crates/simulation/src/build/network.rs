@@ -9,7 +9,8 @@ use crate::wording::refused;
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::{Element, ElementParams};
-use anergy_network::graph::{Edge, GraphProblem, Network, Node, NodeKind};
+use anergy_network::graph::{Coupling, Edge, GraphProblem, Network, Node, NodeKind};
+use anergy_network::soil::SoilRings;
 use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::EquipmentParams;
 use std::collections::{HashMap, HashSet};
@@ -141,9 +142,11 @@ impl Builder<'_> {
         &mut self,
         node_ids: &HashMap<&str, usize>,
         edge_ids: &HashMap<&str, usize>,
-    ) -> Vec<Edge> {
+    ) -> (Vec<Edge>, Vec<Coupling>, Vec<SoilRings>) {
         let mut edges = Vec::with_capacity(self.model.edges.len());
-        for spec in &self.model.edges {
+        let (mut resistances, couplings) = self.resistances(edge_ids);
+        let soil = self.soil(&mut resistances);
+        for (spec, resistance_k_m_w) in self.model.edges.iter().zip(resistances) {
             let ends = [("from", &spec.from), ("to", &spec.to)].map(|(field, name)| {
                 let found = node_ids.get(name.as_str()).copied();
                 if found.is_none() {
@@ -164,7 +167,13 @@ impl Builder<'_> {
                 let what = format!("edge \"{}\" (pipe)", spec.id);
                 self.problems.extend(pipe_temperatures(&self.liquid(), &what, pipe, &spec.place));
             }
-            match spec.params.build(&self.model.medium) {
+            let built = match &spec.params {
+                ElementParams::Pipe(pipe) => {
+                    pipe.build_with(&self.model.medium, resistance_k_m_w).map(Element::Pipe)
+                }
+                params => params.build(&self.model.medium),
+            };
+            match built {
                 Err(error) => {
                     let what = format!("edge \"{}\" ({})", spec.id, spec.params.kind());
                     let problem = refused(&what, &spec.place, error.field(), &error.to_string());
@@ -184,7 +193,7 @@ impl Builder<'_> {
                 }
             }
         }
-        edges
+        (edges, couplings, soil)
     }
 
     /// The other side of a heat exchanger, and whether this side's UA counts.

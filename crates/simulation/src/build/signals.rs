@@ -12,7 +12,7 @@ use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_core::units::Unit;
-use anergy_network::elements::{Element, ElementParams};
+use anergy_network::elements::Element;
 use anergy_network::graph::Network;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -52,29 +52,6 @@ impl Builder<'_> {
             }
         }
         inputs
-    }
-
-    /// What is around each edge: a signal, and how much warmer than it, K.
-    pub(super) fn surroundings(
-        &mut self,
-        signals: &mut SignalTable,
-        ground: SignalId,
-    ) -> Vec<(SignalId, f64)> {
-        self.model
-            .edges
-            .iter()
-            .map(|spec| match &spec.params {
-                ElementParams::Pipe(pipe) => {
-                    let around = pipe.surroundings_k.map_or(ground, |t_k| {
-                        let name = format!("{}.surroundings_k", spec.id);
-                        let signal = temperature_signal(&name, t_k, &SURROUNDINGS);
-                        self.add_signal(signals, signal, &spec.place)
-                    });
-                    (around, pipe.surroundings_difference_k)
-                }
-                _ => (ground, 0.0),
-            })
-            .collect()
     }
 
     pub(super) fn units(

@@ -81,7 +81,8 @@ impl ModelChange for Surroundings {
         if self.lag_s > 0.0 {
             let own = format!("{component}.surroundings_k");
             let driver = self.delayed(component, &own, model)?;
-            let around_k = pipe(model, component)?.surroundings_k.unwrap_or(model.ground_k);
+            let around_k =
+                pipe(model, component)?.surroundings_k.unwrap_or(model.ground.temperature_k);
             changes.push(Change::Set { parameter: own, value: json!(around_k) });
             changes.push(Change::Drive { driver });
         }

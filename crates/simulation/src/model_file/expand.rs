@@ -14,7 +14,7 @@
 //! side (positive flow is feed-in), `extraction_valve` and `stub_cold` towards the hot side.
 
 use super::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
-use crate::document::{Tree, TreeKind};
+use crate::document::{Key, Tree, TreeKind};
 use serde_json::{Value, json};
 use std::ops::Range;
 
@@ -56,25 +56,29 @@ pub(super) fn site_nodes(site: &SiteEntry, span: Option<&Range<usize>>) -> Vec<P
         .collect()
 }
 
-/// The pipes of a trench; `fields` are those of a pipe, with their places.
+/// The pipes of a trench; `fields` are those of a pipe, with their places. Two pipes are companions, which
+/// holds where they have a spacing.
 pub(super) fn trench_pipes(
     id: &str,
     (from, to): (&SiteEntry, &SiteEntry),
     fields: &Tree,
 ) -> Vec<Plain> {
-    from.lines
+    let lines: Vec<&String> = from.lines.iter().filter(|line| to.lines.contains(line)).collect();
+    lines
         .iter()
-        .filter(|line| to.lines.contains(line))
         .map(|line| {
-            let mut tree = Tree::table(
-                fields.span.clone(),
-                vec![
-                    ("id", json!(format!("{id}.{line}"))),
-                    ("kind", json!("pipe")),
-                    ("from", json!(format!("{}.{line}", from.id))),
-                    ("to", json!(format!("{}.{line}", to.id))),
-                ],
-            );
+            let mut entries = vec![
+                ("id", json!(format!("{id}.{line}"))),
+                ("kind", json!("pipe")),
+                ("from", json!(format!("{}.{line}", from.id))),
+                ("to", json!(format!("{}.{line}", to.id))),
+            ];
+            if let [first, second] = lines.as_slice()
+                && line == first
+            {
+                entries.push(("companion", json!(format!("{id}.{second}"))));
+            }
+            let mut tree = Tree::table(fields.span.clone(), entries);
             tree.fill_from(fields);
             Plain { tree, owner: String::new(), entry: format!("trench \"{id}\"") }
         })
@@ -283,6 +287,13 @@ impl Part {
                 ("to", json!(self.ends.1)),
             ],
         );
+        if self.name == "stub_hot"
+            && let TreeKind::Table(entries) = &mut tree.kind
+        {
+            let stub_cold = Tree::from_json(&json!(format!("{prefix}.stub_cold")), None);
+            let key = Key { name: "companion".into(), span: None };
+            entries.push((key, stub_cold));
+        }
         let own = station.get(self.fields);
         // What is no table has been reported.
         if let Some(own) = own {
@@ -304,7 +315,9 @@ fn fill_quantities(tree: &mut Tree, defaults: &Tree, typed: bool) {
     if let TreeKind::Table(entries) = &mut tree.kind {
         for (key, value) in defaults.entries() {
             let quantity = stem(&key.name);
-            let kept = !typed || quantity == "length" || quantity == "zeta";
+            let layered =
+                quantity == "insulation_resistance" && given.iter().any(|q| q == "laying");
+            let kept = (!typed && !layered) || quantity == "length" || quantity == "zeta";
             if kept && !given.contains(&quantity) {
                 entries.push((key.clone(), value.clone()));
             }

@@ -4,6 +4,8 @@ mod components;
 mod composites;
 mod effects;
 mod fluids;
+mod ground;
+mod pipe_types;
 mod plants;
 mod station_types;
 mod three_way_valves;
@@ -16,7 +18,7 @@ use crate::document::{Tree, TreeKind};
 use crate::fields::{Reader, SiTable};
 use crate::model::*;
 use crate::table::Tables;
-use crate::temperatures::{SURROUNDINGS, Temperatures};
+use crate::temperatures::Temperatures;
 use crate::wording::refused;
 use anergy_core::medium::Medium;
 use jiff::Timestamp;
@@ -127,7 +129,7 @@ impl ModelReader<'_> {
             self.check_temperature(&water, "initial_k", run.initial_k, place);
         }
         if let Some((ground, place)) = &ground {
-            self.check_temperature(&SURROUNDINGS, "temperature_k", ground.temperature_k, place);
+            self.check_ground(ground, place, run.as_ref().map(|(run, _)| run));
         }
         let (mut nodes, mut edges) = (Vec::new(), Vec::new());
         let mut interfaces = Vec::new();
@@ -174,7 +176,8 @@ impl ModelReader<'_> {
             run: run?.0,
             medium: medium?,
             follow_temperature: fluid?.0.follow_temperature,
-            ground_k: ground?.0.temperature_k,
+            ground: ground.as_ref()?.0.clone(),
+            ground_place: ground?.1,
             nodes,
             edges,
         };

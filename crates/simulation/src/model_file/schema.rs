@@ -25,13 +25,17 @@ pub fn schema() -> Value {
             ("id", text("Name; default from-to")),
             ("from", text("Site at port a")),
             ("to", text("Site at port b")),
-            ("pipe", text("Name of a pipe_type")),
+            ("pipe", text("Name of a pipe_type, or of a pipe of the catalogue")),
         ];
         let mut trench = entry(&schema_for!(PipeParams), &own);
         trench["required"] = json!(["from", "to"]);
+        for field in ["companion", "companion_reversed"] {
+            trench["properties"].as_object_mut().and_then(|fields| fields.remove(field));
+        }
         trench
     };
-    let mut pipe_type = entry(&schema_for!(PipeParams), &[]);
+    let on = [("pipe", text("Name of a pipe of the catalogue on which it builds"))];
+    let mut pipe_type = entry(&schema_for!(PipeParams), &on);
     if let Some(object) = pipe_type.as_object_mut() {
         object.remove("required");
     }
@@ -157,8 +161,7 @@ fn part_schema(part: &str) -> Value {
         object.remove("required");
     }
     if part == "stub" {
-        schema["properties"]["pipe"] =
-            json!({ "type": "string", "description": "Name of a pipe_type" });
+        schema["properties"]["pipe"] = json!({ "type": "string", "description": "Name of a pipe_type, or of a pipe of the catalogue" });
     }
     schema
 }
@@ -179,7 +182,7 @@ fn kinds(
             if *word == "pipe" {
                 own.push((
                     "pipe",
-                    json!({ "type": "string", "description": "Name of a pipe_type" }),
+                    json!({ "type": "string", "description": "Name of a pipe_type, or of a pipe of the catalogue" }),
                 ));
             }
             let mut variant = entry(&schema(word)?, &own);

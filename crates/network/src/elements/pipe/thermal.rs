@@ -41,19 +41,17 @@ impl PipeParams {
         &self,
         medium: &Medium,
         m_flow_nominal_kg_s: f64,
+        resistance_k_m_w: Option<f64>,
     ) -> Result<PlugFlowPipe, ElementError> {
         let (length_m, diameter_m) = (self.length_m, self.inner_diameter_m);
         let cp = medium.heat_capacity_j_kg_k;
         let area_m2 = PI / 4.0 * diameter_m * diameter_m;
         let capacity_j_k_m = medium.density_kg_m3 * cp * area_m2;
         let wall_j_k_m = self.wall_capacity_j_k_m(diameter_m)?;
-        let loss_time_constant_s = match self.insulation_resistance_k_m_w {
-            None => f64::INFINITY,
-            Some(resistance) => {
-                positive("insulation_resistance_k_m_w", resistance)? * (capacity_j_k_m + wall_j_k_m)
-                    / positive("heat_loss_factor", self.heat_loss_factor)?
-            }
-        };
+        let loss_factor = positive("heat_loss_factor", self.heat_loss_factor)?;
+        let loss_time_constant_s = resistance_k_m_w.map_or(f64::INFINITY, |resistance| {
+            resistance * (capacity_j_k_m + wall_j_k_m) / loss_factor
+        });
         let dispersion_m2_s = not_negative("dispersion_m2_s", self.dispersion_m2_s)?;
         let film_factor = positive("wall_film_factor", self.wall_film_factor)?;
         let wall = match self.wall {
@@ -132,7 +130,10 @@ mod tests {
             wall: WallModel::Equilibrium,
             ..PipeParams::default()
         };
-        let thermal = |params: &PipeParams| params.thermal(&Medium::default(), 1.0).unwrap();
+        let thermal = |params: &PipeParams| {
+            let resistance = params.insulation_resistance_k_m_w;
+            params.thermal(&Medium::default(), 1.0, resistance).unwrap()
+        };
         let pipe = thermal(&params);
         assert!((pipe.wall_kg / pipe.water_kg - 2501.2 / 9041.8).abs() < 2e-4);
         assert!((pipe.loss_time_constant_s - 24_979.0).abs() < 5.0);
@@ -152,7 +153,8 @@ mod tests {
     #[test]
     fn a_wall_needs_a_capacity() {
         let mut params = PipeParams { wall: WallModel::Film, ..PipeParams::default() };
-        let refused = |params: &PipeParams| params.thermal(&Medium::default(), 1.0).unwrap_err();
+        let refused =
+            |params: &PipeParams| params.thermal(&Medium::default(), 1.0, None).unwrap_err();
         assert!(refused(&params).to_string().contains("wall_capacity_j_m_k"));
         params.outer_diameter_m = Some(0.1);
         assert_eq!(refused(&params).field(), Some("outer_diameter_m"));

@@ -1,22 +1,18 @@
 //! Nodes, edges, units and controllers: dispatched on their `kind`.
 
+use super::pipe_types::{self, PipeTypes};
 use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::{Tree, TreeKind};
-use crate::grammar::{Grammar, Registered};
+use crate::document::{Key, Tree, TreeKind};
+use crate::grammar::Registered;
 use crate::model::{ControllerSpec, EdgeSpec, NodeSpec, Place, UnitSpec, WrittenField};
 use crate::model_file::expand::Plain;
 use crate::model_file::{NodeEntry, NodeEntryKind};
 use crate::wording::refused;
 use anergy_control::controllers::ControllerParams;
-use anergy_core::medium::Medium;
-use anergy_network::elements::{ElementParams, pipe::PipeParams};
+use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
-use std::collections::HashMap;
-
-/// The pipe types by name; `None` for those that are reported as wrong already.
-pub(super) type PipeTypes = HashMap<String, Option<Tree>>;
 
 /// An entry whose kind is not known yet: its words are taken out one by one.
 pub(super) struct Words {
@@ -107,6 +103,11 @@ impl ModelReader<'_> {
         if composite {
             // The program has written these words, so the user need not know them.
             words.asked.clear();
+            // A composite's companions are only beside each other where it says how far apart.
+            let spaced = |(key, _): &(Key, Tree)| key.name.starts_with("spacing_");
+            if !words.tree.entries().iter().any(spaced) {
+                words.tree.take("companion");
+            }
         } else {
             words.what = format!("edge \"{id}\" ({kind})");
         }
@@ -132,9 +133,10 @@ impl ModelReader<'_> {
             );
             return None;
         };
-        let Some(defaults) = types.get(type_name) else {
-            let hint = did_you_mean(type_name, types.keys().map(String::as_str))
-                .unwrap_or_else(|| format!("add a section [pipe_type.{type_name}]"));
+        let own = types.get(type_name).cloned();
+        let bought = || pipe_types::bought(type_name, name.span.as_ref()).map(Some);
+        let Some(defaults) = own.or_else(bought) else {
+            let hint = pipe_types::hint(type_name, types);
             self.reader.report(
                 Diagnostic::new(
                     format!("{what}: there is no pipe_type \"{type_name}\""),
@@ -144,80 +146,8 @@ impl ModelReader<'_> {
             );
             return None;
         };
-        let defaults = defaults.as_ref()?;
-        // A quantity of the entry wins over the same quantity of the type, whatever its unit.
-        let stem = |name: &str| {
-            anergy_core::units::split_suffix(name).map_or(name.to_owned(), |(stem, _)| stem.into())
-        };
-        let own: Vec<String> =
-            words.tree.entries().iter().map(|(key, _)| stem(&key.name)).collect();
-        let mut rest = defaults.clone();
-        if let TreeKind::Table(entries) = &mut rest.kind {
-            entries.retain(|(key, _)| !own.contains(&stem(&key.name)));
-        }
-        words.tree.fill_from(&rest);
+        pipe_types::fill(&mut words.tree, &defaults?);
         Some(())
-    }
-
-    /// The pipe types; what is wrong with one is reported here and not where it is used.
-    pub(super) fn pipe_types(&mut self) -> PipeTypes {
-        let Some(tree) = self.tree.get("pipe_type") else { return PipeTypes::new() };
-        if !matches!(tree.kind, TreeKind::Table(_)) {
-            let message =
-                format!("pipe_type must be a table of named types, not {}", tree.type_name());
-            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(
-                "write [pipe_type.dn20] with its fields, and pipe = \"dn20\" to use it",
-            ));
-            // The types are there, only not by name.
-            return self.pipe_types_named_anywhere();
-        }
-        let whole = Grammar::of::<PipeParams>();
-        let grammar = whole.all_optional();
-        let mut types = PipeTypes::new();
-        for (key, fields) in tree.entries() {
-            let what = format!("pipe_type \"{}\"", key.name);
-            let before = self.reader.problems.len();
-            let read = self.reader.read_with(&what, fields, &grammar, &[], |mut value| {
-                // The entry that uses the type gives the rest; here it is a wide pipe of 1 m.
-                if let Value::Object(values) = &mut value {
-                    for name in &whole.required {
-                        values.entry(name.clone()).or_insert(Value::from(1.0));
-                    }
-                }
-                serde_path_to_error::deserialize::<_, PipeParams>(value)
-            });
-            if let Some((params, table)) = read {
-                let place = place(&what, fields, &table);
-                if let Err(error) = params.build(&Medium::default()) {
-                    self.reader.report(refused(&what, &place, error.field(), &error.to_string()));
-                }
-                self.reader.problems.extend(crate::build::pipe_temperatures(
-                    &self.water(),
-                    &what,
-                    &params,
-                    &place,
-                ));
-            }
-            let sound = self.reader.problems.len() == before;
-            types.insert(key.name.clone(), sound.then(|| fields.clone()));
-        }
-        types
-    }
-
-    /// All names of pipe types that entries use, as reported.
-    fn pipe_types_named_anywhere(&self) -> PipeTypes {
-        fn names(tree: &Tree, found: &mut PipeTypes) {
-            if let Some(name) = tree.text("pipe") {
-                found.insert(name.to_owned(), None);
-            }
-            tree.entries().iter().for_each(|(_, value)| names(value, found));
-            if let TreeKind::Array(items) = &tree.kind {
-                items.iter().for_each(|item| names(item, found));
-            }
-        }
-        let mut found = PipeTypes::new();
-        names(self.tree, &mut found);
-        found
     }
 
     pub(super) fn units(&mut self, stations: &Stations) -> Vec<UnitSpec> {

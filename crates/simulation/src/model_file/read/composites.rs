@@ -129,10 +129,16 @@ impl ModelReader<'_> {
                 wrong(format!("{what} exists twice"), "id", "give one of them another id");
                 continue;
             }
-            if let Some((key, _)) = fields.take("kind") {
-                let problem =
-                    Diagnostic::new(format!("{what}: unknown field `kind`"), key.span.clone());
-                self.reader.report(problem.with_hint("a trench is always of pipes"));
+            let own = [
+                ("kind", "a trench is always of pipes"),
+                ("companion", "its two lines are companions where they have a spacing_m"),
+                ("companion_reversed", "the two lines of a trench run alike"),
+            ];
+            let strange =
+                own.into_iter().find_map(|(field, hint)| Some((fields.take(field)?.0, hint)));
+            if let Some((key, hint)) = strange {
+                let message = format!("{what}: unknown field `{}`", key.name);
+                self.reader.report(Diagnostic::new(message, key.span).with_hint(hint));
                 continue;
             }
             let pipes = expand::trench_pipes(&id, (&from, &to), &fields);
