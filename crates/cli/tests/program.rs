@@ -81,6 +81,23 @@ fn exit_codes() {
     );
 }
 
+/// 2 m of pipe at rest in air of 150 degC: 99 degC after 1229 s.
+#[test]
+fn water_that_boils_ends_a_run_that_can_be_reported() {
+    let dir = with_model(
+        "format = 1\n[run]\nuntil = \"1h\"\nstep = \"10s\"\nrecord = \"100s\"\n[[node]]\nid = \"a\"\n\
+         [[node]]\nid = \"b\"\n[[edge]]\nid = \"oven\"\nkind = \"pipe\"\nfrom = \"a\"\nto = \"b\"\n\
+         length_m = 2.0\ninner_diameter_mm = 20.0\ninsulation_resistance_k_m_w = 1.0\n\
+         surroundings_degc = 150.0\n[pressure_reference]\nnode = \"a\"\n",
+    );
+    let run = anergy(&["run", "model.toml", "--out", "out"], dir.path());
+    assert_eq!(run.status.code(), Some(1));
+    let message = text(&run.stderr);
+    assert!(message.contains("at 20m 30s: the water at \"oven\""), "{message}");
+    assert!(message.contains("valid from 0.5 to 99 degC"), "{message}");
+    assert_eq!(anergy(&["report", "out/results.mcap", "--out", "kept.html"], dir.path()).status.code(), Some(0));
+}
+
 #[test]
 fn check_expands_explains_and_lists() {
     let dir = with_model(MODEL);

@@ -41,7 +41,7 @@ fn map_plots_and_tables_are_there() {
     for plot in ["flows", "pressures", "temperatures", "speeds"] {
         assert!(page.contains(&format!("data-plot=\"{plot}\"")), "{plot}");
     }
-    for table in ["key-numbers", "balances", "events", "channels"] {
+    for table in ["key-numbers", "balances", "pipes", "events", "channels"] {
         assert!(page.contains(&format!("data-table=\"{table}\"")), "{table}");
     }
     assert!(page.contains("uPlot (v1.6.32)"));

@@ -190,6 +190,9 @@ pub fn three_houses() -> Recording {
             {"label": "Mass, largest error at a node", "value": 2.1e-13, "unit": "kg/s", "relative_error": 1.6e-12},
             {"label": "Energy fed in − extracted − lost − stored", "value": -3.4e-4, "unit": "J", "relative_error": 6.5e-12},
         ],
+        "pipes": [
+            {"component": "sf1-sf2.hot", "lost_kwh": 0.41, "mean_loss_w": 410.0, "brought_kwh": 0.39, "stored_kwh": -0.02, "relative_error": 3e-13},
+        ],
         "statistics": {"steps": 3600, "newton iterations": 9214, "factorisations": 9214, "wall time": "0.21 s"}
     });
     r
@@ -286,6 +289,7 @@ pub fn hostile() -> Recording {
     recording.summary = json!({
         "key_results": [{"label": EVIL, "value": EVIL, "unit": EVIL, "component": EVIL}],
         "balances": [{"label": EVIL, "value": {"x": EVIL}, "unit": EVIL, "relative_error": EVIL}],
+        "pipes": [{"component": EVIL, "lost_kwh": EVIL, "mean_loss_w": EVIL, "brought_kwh": EVIL, "stored_kwh": EVIL}],
         "statistics": {EVIL: EVIL},
     });
     let site = format!("{EVIL}site");
