@@ -38,12 +38,14 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python -m mypy.stubtest anergy --mypy-config-file crates/py/pyproject.toml
 	$(BIN)/python examples/three-houses/run.py
 	$(BIN)/python examples/town/run.py
+	$(BIN)/python examples/cold-plug/run.py
 	$(BIN)/python examples/rse-facility/run.py
 
 validate: ## Slow cases, peers, large random sets
-	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 RSE_TESTS=all cargo test --release -p anergy-tests \
-		--test every_element --test random_networks --test robustness \
-		--test ait_pongau --test rse_facility -- --nocapture
+	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 RSE_TESTS=all TABLE_DATE=$$(date +%F) \
+		cargo test --release -p anergy-tests \
+		--test every_element --test random_networks --test robustness --test destest \
+		--test openmodelica_heat --test ait_pongau --test rse_facility -- --nocapture
 
 .venv-peers/.installed:
 	$(PYTHON) -m venv .venv-peers

@@ -1,7 +1,11 @@
 //! Shapes of networks: each is solved, whatever its shape and whether its pressure is held or given.
 #![allow(clippy::unwrap_used)]
 
+use anergy_core::clock::Time;
+use anergy_simulation::balance::Balances;
+use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
 use anergy_simulation::steady::{self, Steady};
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -146,6 +150,88 @@ fn the_supply_frontier_moves_with_the_feeders() {
     assert!(equal.iter().zip(&weak).all(|(equal, weak)| weak > equal), "{equal:?} {weak:?}");
     let frontier = |flows: [f64; 3]| flows.iter().filter(|flow| **flow > 0.0).count();
     assert!(frontier(weak) > frontier(equal), "{equal:?} {weak:?}");
+}
+
+/// Feeders at both ends of `f0 - h1 - h2 - f3`, equal houses between them; check valves that hold.
+fn two_feeders(trenches: &[(&str, &str)]) -> String {
+    let mut text = HEAD.replace(
+        "kind = \"producer\"\n",
+        "kind = \"producer\"\nfeed_in_check_valve = { kvs_m3_h = 11, leakage = 1e-9 }\n",
+    ) + "[ground]\ntemperature_degc = 10\n[pressure_reference]\nnode = \"f0.cold\"\npressure_bar = 2\n";
+    for (site, kind) in [("f0", "feeder"), ("h1", "house"), ("h2", "house"), ("f3", "feeder")] {
+        let _ = write!(
+            text,
+            "[[site]]\nid = \"{site}\"\n[[station]]\nsite = \"{site}\"\ntype = \"{kind}\"\n"
+        );
+    }
+    for (a, b) in trenches {
+        let _ =
+            write!(text, "[[trench]]\nfrom = \"{a}\"\nto = \"{b}\"\nlength_m = 60\npipe = \"p\"\n");
+    }
+    text
+}
+
+#[test]
+fn water_between_two_feeders_stands_and_cools_until_one_grows_weaker() {
+    const LINE: &[(&str, &str)] = &[("f0", "h1"), ("h1", "h2"), ("h2", "f3")];
+    const RING: &[(&str, &str)] = &[("f0", "h1"), ("h1", "h2"), ("h2", "f3"), ("f3", "f0")];
+    // tau_R = 3.4 K m/W * 1000 * 4180 * pi/4 * 0.0285^2 = 9066 s
+    let tau_s = 3.4 * 1000.0 * 4180.0 * std::f64::consts::PI / 4.0 * 0.0285 * 0.0285;
+    const HOURS_4_S: f64 = 14_400.0;
+    for (name, trenches, standing) in
+        [("line", LINE, &["h1-h2"][..]), ("ring", RING, &["h1-h2", "f3-f0"][..])]
+    {
+        let mut simulation =
+            Simulation::new(build(&model(&two_feeders(trenches))).unwrap()).unwrap();
+        let get = |simulation: &Simulation, channel: String| {
+            simulation.get(simulation.channel(&channel).unwrap())
+        };
+        let flow = |simulation: &Simulation, trench: &str| {
+            get(simulation, format!("{trench}.hot.m_flow_kg_s"))
+        };
+        // The colder end of a supply pipe: a trace passes the check valve and keeps the other end warm.
+        let degc = |simulation: &Simulation, trench: &str| {
+            let end = |end: &str| get(simulation, format!("{trench}.hot.{end}")) - 273.15;
+            end("t_a_k").min(end("t_b_k"))
+        };
+        let minute = Time::from_s(60.0).unwrap();
+        let after = |s: f64| Time::from_s(s).unwrap();
+        // Equal feeders: by symmetry nothing moves half way, where the water cools from 60 degC.
+        simulation.advance_to(after(HOURS_4_S), minute).unwrap();
+        let cooled = 10.0 + 50.0 * (-HOURS_4_S / tau_s).exp();
+        for trench in standing {
+            assert!(flow(&simulation, trench).abs() < 1e-7, "{name}: {trench} moves");
+            let found = degc(&simulation, trench);
+            assert!((found - cooled).abs() < 0.1, "{name}: {trench} {found}, expected {cooled}");
+        }
+        assert!(degc(&simulation, "f0-h1") > 60.0, "{name}");
+        assert!(flow(&simulation, "f0-h1") > 0.0 && flow(&simulation, "h2-f3") < 0.0, "{name}");
+        let before_degc = degc(&simulation, "h2-f3");
+        // f3 becomes too weak to open its check valve: the zone moves to it. In the line its pipe stands
+        // and cools now, and what stood before reaches h2 as a cold plug.
+        let speed = simulation.signal("f3.feed_in_pump.speed").unwrap();
+        simulation.set(speed, 0.3).unwrap();
+        let mut coldest = f64::INFINITY;
+        for k in 1..=20 {
+            simulation.advance_to(after(HOURS_4_S + 60.0 * f64::from(k)), minute).unwrap();
+            coldest = coldest.min(get(&simulation, "h2.hot.t_k".into()) - 273.15);
+        }
+        assert!(coldest < 45.0, "{name}: {coldest}");
+        simulation.advance_to(after(2.0 * HOURS_4_S), minute).unwrap();
+        assert!(flow(&simulation, "h1-h2") > 1e-3, "{name}: {}", flow(&simulation, "h1-h2"));
+        assert!(degc(&simulation, "h1-h2") > 50.0, "{name}: {}", degc(&simulation, "h1-h2"));
+        if name == "line" {
+            assert!(flow(&simulation, "h2-f3").abs() < 1e-6);
+            let cooled = 10.0 + (before_degc - 10.0) * (-HOURS_4_S / tau_s).exp();
+            let found = degc(&simulation, "h2-f3");
+            assert!((found - cooled).abs() < 1.0, "{found}, expected {cooled}");
+        } else {
+            // Round the other way f0 serves h2 too.
+            assert!(flow(&simulation, "f3-f0") < 0.0 && flow(&simulation, "h2-f3") < 0.0);
+        }
+        let balances = Balances::of(&simulation);
+        assert!(balances.heat_error() < 1e-6, "{name}: {balances:?}");
+    }
 }
 
 #[test]

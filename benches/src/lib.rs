@@ -4,6 +4,8 @@
 //! a few loops. Pipes are sized for the design flows, valves take what the farthest consumer needs
 //! more pressure than theirs: every consumer gets about its design flow.
 
+pub mod destest;
+
 use std::collections::HashSet;
 use std::f64::consts::PI;
 use std::fmt::Write;

@@ -1,6 +1,7 @@
 //! Tests of the whole workspace: each file beside this folder is one of them. Here is what several of
 //! them need: where things are, random numbers that are the same every time, random elements.
 
+pub mod pages;
 pub mod samples;
 
 use std::path::{Path, PathBuf};
