@@ -10,12 +10,9 @@
 //!
 //! **Sources** specification 5.6 (leakage 1e-4, 5 s); `wetter2014` (regularised law).
 
-use super::flow_coefficient;
-use crate::two_port::{
-    Actuator, Characteristic, EdgeState, ElementError, TwoPort, not_negative, positive,
-};
+use super::valve::{Valve, ValveCharacteristic, ValveParams};
+use crate::two_port::{Actuator, Characteristic, EdgeState, ElementError, TwoPort};
 use anergy_core::medium::Medium;
-use anergy_core::numerics::regularize::quadratic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -78,19 +75,11 @@ impl Default for BallValveParams {
     }
 }
 
-/// A ball valve ready to be solved.
+/// A ball valve ready to be solved: a switching linear valve with its own words for the command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallValve {
-    k_open: f64,
-    leakage: f64,
+    valve: Valve,
     actuator: Actuator,
-    m_flow_nominal_kg_s: f64,
-    m_turbulent_kg_s: f64,
-}
-
-/// Where a command leads.
-fn end_position(command: f64) -> f64 {
-    if command >= OPENS { 1.0 } else { 0.0 }
 }
 
 impl BallValveParams {
@@ -101,48 +90,37 @@ impl BallValveParams {
     pub fn build(&self, medium: &Medium) -> Result<BallValve, ElementError> {
         let out_of_range =
             |field, value, requirement| Err(ElementError::OutOfRange { field, value, requirement });
-        let k_open = flow_coefficient(positive("kvs_m3_h", self.kvs_m3_h)?, medium.density_kg_m3);
         if !(1e-6..1.0).contains(&self.leakage) {
             return out_of_range("leakage", self.leakage, "must lie between 1e-6 and 1");
         }
         if self.open != 0.0 && self.open != 1.0 {
             return out_of_range("open", self.open, "must be 0 or 1");
         }
-        let initial_position = self.initial_opening.unwrap_or(self.open);
-        if !(0.0..=1.0).contains(&initial_position) {
-            return out_of_range("initial_opening", initial_position, "must lie between 0 and 1");
-        }
-        let m_flow_nominal_kg_s = match self.m_flow_nominal_kg_s {
-            Some(m) => positive("m_flow_nominal_kg_s", m)?,
-            None => k_open * 1e4_f64.sqrt(),
-        };
-        Ok(BallValve {
-            k_open,
+        let valve = ValveParams {
+            kvs_m3_h: self.kvs_m3_h,
+            characteristic: ValveCharacteristic::Linear,
             leakage: self.leakage,
-            actuator: Actuator {
-                position: "opening",
-                command: "open",
-                unit: "",
-                initial_command: self.open,
-                initial_position,
-                rise_time_s: not_negative("stroke_time_s", self.stroke_time_s)?,
-                min: 0.0,
-                max: 1.0,
-            },
-            m_flow_nominal_kg_s,
-            m_turbulent_kg_s: positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s,
-        })
+            switch_at: Some(OPENS),
+            opening: Some(self.open),
+            initial_opening: self.initial_opening,
+            stroke_time_s: self.stroke_time_s,
+            m_flow_nominal_kg_s: self.m_flow_nominal_kg_s,
+            delta_m: self.delta_m,
+            ..ValveParams::default()
+        };
+        let valve = valve.build(medium)?;
+        let actuator = Actuator { command: "open", ..valve.own_actuator() };
+        Ok(BallValve { valve, actuator })
     }
 }
 
 impl TwoPort for BallValve {
     fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
-        let k = self.k_open * (self.leakage + (1.0 - self.leakage) * state.position);
-        Characteristic::PressureLoss(quadratic(m, 1.0 / (k * k), self.m_turbulent_kg_s))
+        self.valve.characteristic(m, state)
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {
-        self.m_flow_nominal_kg_s
+        self.valve.m_flow_nominal_kg_s()
     }
 
     fn actuator(&self) -> Option<Actuator> {
@@ -150,7 +128,7 @@ impl TwoPort for BallValve {
     }
 
     fn target_position(&self, command: f64) -> f64 {
-        end_position(command)
+        self.valve.target_position(command)
     }
 }
 
@@ -172,7 +150,8 @@ mod tests {
         };
         assert!((loss(&valve, 1.0, 1.0) - 1e5).abs() < 1e-6);
         assert!((loss(&valve, -0.500_05, 0.5) + 1e5).abs() < 1e-6);
-        let turbulent = BallValve { m_turbulent_kg_s: 1e-9, ..valve.clone() };
+        let turbulent = BallValveParams { delta_m: 1e-8, ..params.clone() };
+        let turbulent = turbulent.build(&Medium::default()).unwrap();
         assert!((loss(&turbulent, 1e-4, 0.0) - 1e5).abs() < 1e-6);
         assert_eq!([0.0, 0.4, 0.5, 1.0].map(|y| valve.target_position(y)), [0.0, 0.0, 1.0, 1.0]);
         assert_eq!(valve.actuator().unwrap().initial_position, 1.0);
