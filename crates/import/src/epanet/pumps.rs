@@ -84,14 +84,19 @@ fn of_points(points: &[(f64, f64)]) -> Result<HeadCurve, String> {
     if q0 > 0.0 {
         points.insert(0, (0.0, h0 + (h0 - h1) / (q1 - q0) * q0));
     }
-    let mut all = vec![points[0]];
+    let (flow_m3_s, head_m) = straight_pieces(&points).into_iter().unzip();
+    Ok(HeadCurve::Points { flow_m3_s, head_m })
+}
+
+/// More points on the straight lines between points, so that a smooth curve follows them.
+pub(super) fn straight_pieces(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut all: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
         let [(qa, ha), (qb, hb)] = [pair[0], pair[1]];
         all.extend(PLACES.map(|share| (qa + share * (qb - qa), ha + share * (hb - ha))));
         all.push((qb, hb));
     }
-    let (flow_m3_s, head_m) = all.into_iter().unzip();
-    Ok(HeadCurve::Points { flow_m3_s, head_m })
+    all
 }
 
 impl Writer<'_> {

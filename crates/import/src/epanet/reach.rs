@@ -1,6 +1,6 @@
 //! What closed links cut off from every given head.
 
-use super::network::{LinkKind, Network, NodeKind, ValveKind};
+use super::network::{LinkKind, Network, NodeKind};
 use super::translate::is_open;
 use super::units::Options;
 use crate::NoteKind;
@@ -22,14 +22,7 @@ impl Reach {
         let open: Vec<bool> = network
             .links
             .iter()
-            .map(|link| {
-                // Valves that no edge can stand for are left out, see `valves`.
-                let lost = matches!(
-                    link.kind,
-                    LinkKind::Valve { kind: ValveKind::Gpv | ValveKind::Pcv, .. }
-                ) && link.status == super::network::Status::Active;
-                is_open(link) && !lost && !into_full_tank(network, link)
-            })
+            .map(|link| is_open(link) && !into_full_tank(network, link))
             .collect();
         let mut links_of = vec![Vec::new(); network.nodes.len()];
         for (i, link) in network.links.iter().enumerate().filter(|(i, _)| open[*i]) {
@@ -92,11 +85,6 @@ impl Reach {
             } else if into_full_tank(network, link) {
                 let what = "left out: it would pump into a full tank or out of an empty one";
                 link.note(text, NoteKind::Changed, what);
-            } else if let LinkKind::Valve { kind: ValveKind::Gpv | ValveKind::Pcv, .. } = link.kind
-                && link.status == super::network::Status::Active
-            {
-                let what = "left out: no edge has a tabulated loss, and no water passes";
-                link.note(text, NoteKind::Problem, what);
             }
         }
     }

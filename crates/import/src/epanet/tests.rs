@@ -150,9 +150,25 @@ fn valves() {
     let throttle = entry(&with_valve("TCV 4", ""), "V").join("\n");
     assert!(throttle.contains("dp_nominal_pa = 1998.") && throttle.contains("7.853"), "{throttle}");
     has(&with_valve("PBV 2", ""), "V", &["kind = \"pressure_source\"", "head_pa = -19620.0"]);
+    // A curve of one point begins at zero: 1 l/s at 1 m is 9.81 kPa.
     let general = with_valve("GPV c", "[CURVES]\nc 1 1\n");
-    assert!(!general.model.contains("id = \"V\""));
-    says(&general, NoteKind::Problem, Some(10), "GPV \"V\": left out");
+    let curve = entry(&general, "V").join("\n");
+    assert!(curve.contains("kind = \"resistance\"") && curve.contains("0.001]"), "{curve}");
+    assert!(curve.contains("curve_dp_pa = [0.0, ") && curve.contains(", 9810.0]"), "{curve}");
+    says(&general, NoteKind::Changed, Some(10), "begins at no flow and no loss");
+    let falls = with_valve("GPV c", "[CURVES]\nc 1 2\nc 2 1\n");
+    says(&falls, NoteKind::Problem, Some(10), "does not rise with the flow");
+    // Half open without a curve: four times the loss coefficient of the open valve; with one, 25 % of the
+    // flow coefficient: sixteen times.
+    let dp_pa = |net: &Import| {
+        let line =
+            entry(net, "V").into_iter().find(|line| line.starts_with("dp_nominal_pa")).unwrap();
+        line.rsplit_once(' ').unwrap().1.parse::<f64>().unwrap()
+    };
+    let (half, open) = (with_valve("PCV 50 2", ""), with_valve("PCV 100 2", ""));
+    assert!((dp_pa(&half) / dp_pa(&open) - 4.0).abs() < 1e-12);
+    let curved = with_valve("PCV 50 2 c", "[CURVES]\nc 40 20\nc 60 30\n");
+    assert!((dp_pa(&curved) / dp_pa(&open) - 16.0).abs() < 1e-12);
     // Fixed open or closed valves do not control.
     has(&with_valve("PRV 20", "[STATUS]\nV OPEN\n"), "V", &["kind = \"resistance\""]);
     assert!(!with_valve("PRV 20", "[STATUS]\nV CLOSED\n").model.contains("id = \"V\""));
@@ -206,6 +222,11 @@ fn emitters_are_orifices() {
     // 2 l/s at 1 m.
     has(&net, "J.emitter", &["dp_nominal_pa = 9810.0", "m_flow_nominal_kg_s = 2.0"]);
     has(&net, "J.outside", &["elevation_m = 1.0", "pressure_pa = 0.0"]);
+    assert!(!net.model.contains("exponent"));
+    let net =
+        of("[JUNCTIONS]\nJ 1\n[RESERVOIRS]\nR 5\n[PIPES]\nP R J 10 100 100\n[EMITTERS]\nJ 2\n\
+                  [OPTIONS]\nUnits LPS\nEmitter Exponent 0.8\n");
+    has(&net, "J.emitter", &["m_flow_nominal_kg_s = 2.0", "exponent = 1.25"]);
 }
 
 #[test]

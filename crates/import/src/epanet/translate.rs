@@ -147,17 +147,19 @@ impl Writer<'_> {
         }
     }
 
-    /// An emitter with the exponent 0.5 is an orifice into the open.
+    /// An emitter, `q = c p^e`, is a resistance into the open with the exponent 1/e.
     fn emitter(&mut self, i: usize, coefficient: f64) {
         let (node, options) = (&self.network.nodes[i], self.options);
-        if (options.emitter_exponent - 0.5).abs() > 1e-9 {
+        let exponent = 1.0 / options.emitter_exponent;
+        if !(0.5..=4.0).contains(&exponent) {
             let what = format!(
-                "emitter of \"{}\": only the exponent 0.5 can be said, not {}; nothing flows out",
+                "emitter of \"{}\": the exponent {} is not between 0.25 and 2; nothing flows out",
                 node.id, options.emitter_exponent
             );
             self.text.note(NoteKind::Problem, node.line, what);
             return;
         }
+        let orifice = (exponent - 2.0).abs() < 1e-9;
         let outside = self.text.new_node_id(&format!("{}.outside", node.id));
         let edge = self.text.new_edge_id(&format!("{}.emitter", node.id));
         self.text
@@ -172,7 +174,8 @@ impl Writer<'_> {
                 "m_flow_nominal_kg_s",
                 coefficient * options.flow_m3_s * options.density_kg_m3(),
             )
-            .number("delta_m", 1e-3);
+            .number("delta_m", 1e-3)
+            .maybe("exponent", (!orifice).then_some(exponent));
         let what = format!("the emitter of \"{}\" is the resistance \"{edge}\"", node.id);
         self.text.note(NoteKind::Changed, node.line, what);
     }

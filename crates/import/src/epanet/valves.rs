@@ -1,9 +1,12 @@
 //! Valves of an EPANET network.
 
 use super::network::{Link, LinkKind, Status, ValveKind};
+use super::pumps::straight_pieces;
 use super::translate::{LEAST_MINOR_LOSS, VELOCITY_M_S, Writer, kv_m3_h, m_flow_at_velocity};
 use crate::NoteKind;
 
+/// EPANET opens a position control valve at least so far.
+const LEAST_COEFFICIENT: f64 = 1e-3;
 /// Share of the flow at 1 m/s below which the loss of a valve is regularised.
 const DELTA_M: f64 = 1e-3;
 
@@ -11,13 +14,7 @@ impl Writer<'_> {
     pub(super) fn valve(&mut self, i: usize) {
         let network = self.network;
         let link = &network.links[i];
-        let LinkKind::Valve { kind, diameter_m, minor_loss } = link.kind else { return };
-        // What no edge can say: without it the network is another one, and this must be read.
-        if matches!(kind, ValveKind::Gpv | ValveKind::Pcv) && link.status == Status::Active {
-            let what = "left out: there is no edge with a tabulated loss";
-            link.note(self.text, NoteKind::Problem, what);
-            return;
-        }
+        let LinkKind::Valve { kind, diameter_m, minor_loss, .. } = link.kind else { return };
         let ends = self.guarded(i, false);
         if link.status == Status::Open {
             self.throttle(link, &ends, minor_loss);
@@ -42,8 +39,64 @@ impl Writer<'_> {
                 let what = "a pressure source that takes its pressure away at any flow";
                 link.note(self.text, NoteKind::Changed, what);
             }
-            ValveKind::Gpv | ValveKind::Pcv => {}
+            ValveKind::Gpv => self.general_purpose(link, &ends),
+            ValveKind::Pcv => {
+                // The flow coefficient relative to that of the open valve, at least EPANET's.
+                let relative = self.relative_coefficient(link).max(LEAST_COEFFICIENT);
+                self.throttle(link, &ends, minor_loss / (relative * relative));
+            }
         }
+    }
+
+    /// The points of the curve of a valve, as written.
+    fn curve(&self, link: &Link) -> &[(f64, f64)] {
+        let LinkKind::Valve { curve: Some(id), .. } = &link.kind else { return &[] };
+        self.network.curves.get(id).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    /// Flow coefficient of a valve in its position over that of the open one: straight between the points
+    /// of its curve, the position itself without one.
+    fn relative_coefficient(&self, link: &Link) -> f64 {
+        let position = link.setting.clamp(0.0, 100.0);
+        let ends = [(0.0, 0.0), (100.0, 100.0)];
+        let mut points = vec![ends[0]];
+        points.extend(self.curve(link).iter().filter(|(x, _)| *x > 0.0 && *x < 100.0));
+        points.push(ends[1]);
+        let next = points.partition_point(|(x, _)| *x <= position).clamp(1, points.len() - 1);
+        let ((x0, y0), (x1, y1)) = (points[next - 1], points[next]);
+        (y0 + (y1 - y0) * (position - x0) / (x1 - x0)) / 100.0
+    }
+
+    /// A valve whose loss follows a curve, as straight pieces.
+    fn general_purpose(&mut self, link: &Link, ends: &[String; 2]) {
+        let (flow, head_pa) =
+            (self.options.flow_m3_s, self.options.length_m() * self.options.pa_m());
+        let points: Vec<(f64, f64)> =
+            self.curve(link).iter().map(|(q, h)| (q * flow, h * head_pa)).collect();
+        let rises = |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && pair[1].1 > pair[0].1;
+        let rising = points.windows(2).all(rises)
+            && points
+                .first()
+                .is_some_and(|(q, h)| (*q > 0.0 && *h > 0.0) || (*q == 0.0 && *h == 0.0));
+        let from_zero = points.first().filter(|(q, _)| *q > 0.0).map(|_| (0.0, 0.0));
+        let points: Vec<(f64, f64)> = from_zero.into_iter().chain(points).collect();
+        if !rising || points.len() < 2 {
+            let what = "left out: the loss of its curve does not rise with the flow from zero on";
+            link.note(self.text, NoteKind::Problem, what);
+            return;
+        }
+        let (flows, losses): (Vec<f64>, Vec<f64>) = straight_pieces(&points).into_iter().unzip();
+        self.text
+            .edge(&link.id, "resistance", &ends[0], &ends[1])
+            .numbers("curve_v_flow_m3_s", &flows)
+            .numbers("curve_dp_pa", &losses);
+        let what = if from_zero.is_some() {
+            "the straight pieces of its curve are rounded within 0.1 % beside the points; the first one begins \
+             at no flow and no loss"
+        } else {
+            "the straight pieces of its curve are rounded within 0.1 % beside the points"
+        };
+        link.note(self.text, NoteKind::Changed, what);
     }
 
     /// A resistance with a loss coefficient.

@@ -67,8 +67,8 @@ impl HeatMeterParams {
         let resistance = ResistanceParams {
             dp_nominal_pa: Some(self.dp_nominal_pa),
             m_flow_nominal_kg_s: Some(self.m_flow_nominal_kg_s),
-            kv_m3_h: None,
             delta_m: self.delta_m,
+            ..ResistanceParams::default()
         };
         Ok(HeatMeter(resistance.build(medium)?))
     }

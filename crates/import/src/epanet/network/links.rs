@@ -64,6 +64,8 @@ pub(in crate::epanet) enum LinkKind {
         kind: ValveKind,
         diameter_m: f64,
         minor_loss: f64,
+        /// Loss over the flow (GPV), or flow coefficient over the position in percent (PCV).
+        curve: Option<String>,
     },
 }
 
@@ -89,7 +91,7 @@ impl Network {
         let (kind, status, setting) = match row.section {
             Section::Pipes => pipe(row, options)?,
             Section::Pumps => self.pump(row, options)?,
-            _ => valve(row, options)?,
+            _ => self.valve(row, options)?,
         };
         if self.link_index.insert(id.clone(), self.links.len()).is_some() {
             return Err(row.error(format!("link \"{id}\" exists twice")));
@@ -133,6 +135,33 @@ impl Network {
         }
         let status = if speed > 0.0 { Status::Open } else { Status::Closed };
         Ok((LinkKind::Pump { head_times_flow_m4_s, curve, pattern }, status, speed))
+    }
+
+    fn valve(
+        &self,
+        row: &Row<'_>,
+        options: &Options,
+    ) -> Result<(LinkKind, Status, f64), ImportError> {
+        let word = row.word(4, "kind of valve")?;
+        let Some((_, kind)) = VALVES.iter().find(|(name, _)| begins(word, name)) else {
+            return Err(row.error(format!("unknown kind of valve \"{word}\"")));
+        };
+        // The setting of a general purpose valve is the name of its curve.
+        let (setting, curve) = match kind {
+            ValveKind::Gpv => (0.0, Some(row.word(5, "curve")?)),
+            ValveKind::Pcv => (row.number(5, "setting")?, row.words.get(7).copied()),
+            _ => (row.number(5, "setting")?, None),
+        };
+        if let Some(id) = curve.filter(|id| !self.curves.contains_key(*id)) {
+            return Err(row.error(format!("there is no curve \"{id}\"")));
+        }
+        let kind = LinkKind::Valve {
+            kind: *kind,
+            diameter_m: row.positive(3, "diameter")? * options.diameter_m(),
+            minor_loss: if row.words.len() > 6 { row.not_negative(6, "minor loss")? } else { 0.0 },
+            curve: curve.map(str::to_owned),
+        };
+        Ok((kind, Status::Active, setting))
     }
 
     /// A line of `[STATUS]`: of one link, or of all whose ids are numbers between two.
@@ -243,24 +272,6 @@ fn pipe(row: &Row<'_>, options: &Options) -> Result<(LinkKind, Status, f64), Imp
         check_valve,
     };
     Ok((kind, status, 0.0))
-}
-
-fn valve(row: &Row<'_>, options: &Options) -> Result<(LinkKind, Status, f64), ImportError> {
-    let word = row.word(4, "kind of valve")?;
-    let Some((_, kind)) = VALVES.iter().find(|(name, _)| begins(word, name)) else {
-        return Err(row.error(format!("unknown kind of valve \"{word}\"")));
-    };
-    let setting = match kind {
-        // The setting of a general purpose valve is the name of its curve.
-        ValveKind::Gpv => 0.0,
-        _ => row.number(5, "setting")?,
-    };
-    let kind = LinkKind::Valve {
-        kind: *kind,
-        diameter_m: row.positive(3, "diameter")? * options.diameter_m(),
-        minor_loss: if row.words.len() > 6 { row.not_negative(6, "minor loss")? } else { 0.0 },
-    };
-    Ok((kind, Status::Active, setting))
 }
 
 impl Link {
