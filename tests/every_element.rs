@@ -257,6 +257,7 @@ fn solved(nodes: usize, parts: &[Part]) -> Result<(Vec<f64>, Vec<f64>), String> 
         prescriptions: Vec::new(),
         couplings: Vec::new(),
         soil: Vec::new(),
+        regulators: Vec::new(),
     };
     if let Some(problem) = network.problems().first() {
         return Err(format!("{problem:?}"));
@@ -276,8 +277,8 @@ fn pump_loop(params: &ElementParams, position: f64) -> Vec<Part> {
         ElementParams::Resistance(ResistanceParams {
             dp_nominal_pa: Some(dp),
             m_flow_nominal_kg_s: Some(0.5),
-            kv_m3_h: None,
             delta_m: 0.1,
+            ..ResistanceParams::default()
         })
     };
     vec![

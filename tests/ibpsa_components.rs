@@ -146,8 +146,8 @@ fn resistance_with_a_nominal_point() {
     let resistance = ElementParams::Resistance(ResistanceParams {
         dp_nominal_pa: Some(10.0),
         m_flow_nominal_kg_s: Some(5.0),
-        kv_m3_h: None,
         delta_m: 0.3,
+        ..ResistanceParams::default()
     });
     for [time, m] in results.columns(["time_s", "res1.m_flow"]) {
         let dp = 20.0 * time - 10.0;

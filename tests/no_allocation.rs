@@ -123,3 +123,90 @@ fn ground_that_follows_the_year_and_soil_that_stores() {
         soil_rings = 3\n";
     assert_no_allocation(&mut simulation(&model(text)), &[], (50, 200), 600);
 }
+
+/// A pump, and between supply and return: a branch with a load and a self-acting controller over it, a valve
+/// left free for the flow of that branch's neighbour, and a pulsing three-way valve.
+const ACTING: &str = r#"
+format = 1
+[[node]]
+id = "r"
+[[node]]
+id = "s0"
+[[node]]
+id = "s"
+[[node]]
+id = "between"
+[[node]]
+id = "way"
+[pressure_reference]
+node = "r"
+pressure_bar = 2
+[[edge]]
+id = "pump"
+kind = "pump"
+from = "r"
+to = "s0"
+head_max_bar = 1.5
+free_flow_m3_h = 10
+speed = 1
+initial_speed = 1
+[[edge]]
+id = "line"
+kind = "valve"
+from = "s0"
+to = "s"
+kvs_m3_h = 20
+characteristic = "linear"
+opening = 0.5
+[[edge]]
+id = "load"
+kind = "resistance"
+from = "s"
+to = "between"
+kv_m3_h = 1.6
+[[edge]]
+id = "controller"
+kind = "dp_controller"
+from = "between"
+to = "r"
+kvs_m3_h = 2.5
+high_node = "s"
+low_node = "between"
+dp_set_bar = 0.2
+[[edge]]
+id = "neighbour"
+kind = "resistance"
+from = "s"
+to = "r"
+kv_m3_h = 2
+[[edge]]
+id = "away"
+kind = "resistance"
+from = "way"
+to = "r"
+kv_m3_h = 1
+[[three_way_valve]]
+id = "mixer"
+a = "s"
+b = "s0"
+ab = "way"
+kvs_m3_h = 1
+pulse_period_s = 20
+stroke_time_s = 0
+opening = 0.3
+[[prescribed]]
+quantity = "neighbour.dp_pa"
+value = 0.7
+unit = "bar"
+free = "line.opening"
+"#;
+
+#[test]
+fn prescriptions_self_acting_and_pulsing_valves() {
+    let mut simulation = simulation(&model(ACTING));
+    assert_no_allocation(&mut simulation, &[("pump", 0.99)], (50, 200), 3);
+    // They did act.
+    let get = |name: &str| simulation.get(simulation.channel(name).unwrap());
+    assert!((get("neighbour.dp_pa") / 7e4 - 1.0).abs() < 1e-6, "{}", get("neighbour.dp_pa"));
+    assert!((2e4..2.2e4).contains(&get("load.dp_pa")), "{}", get("load.dp_pa"));
+}

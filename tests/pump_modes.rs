@@ -30,8 +30,8 @@ fn resistance(m_flow_kg_s: f64) -> ElementParams {
     ElementParams::Resistance(ResistanceParams {
         dp_nominal_pa: Some(1e3),
         m_flow_nominal_kg_s: Some(m_flow_kg_s),
-        kv_m3_h: None,
         delta_m: 0.02,
+        ..ResistanceParams::default()
     })
 }
 
@@ -58,6 +58,7 @@ fn network(nodes: usize, parts: &[(usize, usize, ElementParams)]) -> Network {
         prescriptions: Vec::new(),
         couplings: Vec::new(),
         soil: Vec::new(),
+        regulators: Vec::new(),
     }
 }
 
@@ -214,4 +215,113 @@ fn a_proportional_head_follows_a_valve_with_its_rise_time() {
         flows.push(m);
     }
     assert!(flows[50] > 0.2 && flows[150] < 0.1, "{} {}", flows[50], flows[150]);
+}
+
+/// A pump in a loop against 1e5 Pa/(kg/s)^2; at full speed 0.52255 kg/s and 27 306 Pa.
+fn circuit(pump: &str, more: &str) -> Model {
+    let text = format!(
+        "format = 1\n[pressure_reference]\nnode = \"a\"\n[[node]]\nid = \"a\"\n[[node]]\nid = \"b\"\n\
+         [[edge]]\nid = \"pump\"\nkind = \"pump\"\nfrom = \"a\"\nto = \"b\"\nhead_max_pa = 40221.0\n\
+         free_flow_l_min = 55.33\n{pump}\n\
+         [[edge]]\nid = \"r\"\nkind = \"resistance\"\nfrom = \"b\"\nto = \"a\"\ndp_nominal_pa = 1e5\n\
+         m_flow_nominal_kg_s = 1.0\ndelta_m = 0.01\n{more}"
+    );
+    Model::from_toml(&text, &workspace()).unwrap_or_else(|e| panic!("{}", e.render(&text)))
+}
+
+/// Events of a run of 600 s in steps of 1 s, in which `signal` has the second value from 300 s on.
+fn events(model: &Model, signal: &str, values: [f64; 2]) -> Vec<(String, f64, String)> {
+    let mut simulation = Simulation::new(build(model).unwrap()).unwrap();
+    let time = |s: f64| Time::from_s(s).unwrap();
+    for (value, until_s) in values.into_iter().zip([300.0, 600.0]) {
+        let signal = simulation.signal(signal).unwrap();
+        simulation.set(signal, value).unwrap();
+        simulation.advance_to(time(until_s), time(1.0)).unwrap();
+    }
+    let events = simulation.take_events();
+    events.map(|event| (event.kind, event.time.as_s(), event.message)).collect()
+}
+
+#[test]
+fn a_pump_that_cannot_hold_its_set_value_says_so() {
+    for (pump, signal, low, high, most) in [
+        ("mode = \"head\"\nhead_pa = 10000", "pump.head_pa", 10_000.0, 38_000.0, 27_306.0),
+        ("mode = \"flow\"\nm_flow_set_kg_s = 0.3", "pump.m_flow_set_kg_s", 0.3, 0.8, 0.522_55),
+    ] {
+        let model = circuit(pump, "");
+        let said = events(&model, signal, [high, low]);
+        let kinds: Vec<&str> = said.iter().map(|(kind, ..)| kind.as_str()).collect();
+        assert_eq!(kinds, ["unreached", "reached"], "{said:?}");
+        // 60 s after the lag of 8 s has brought the set value beyond the curve.
+        assert!(
+            (61.0..75.0).contains(&said[0].1) && (301.0..310.0).contains(&said[1].1),
+            "{said:?}"
+        );
+        let message = &said[0].2;
+        assert!(
+            message.contains(&format!("{signal} = ")) && message.contains("pump.speed"),
+            "{message}"
+        );
+        // `solve` lists it with the nearest value; what is held is no event and not listed.
+        assert!(events(&model, signal, [low, 0.5 * low]).is_empty());
+        let text = pump.replace("10000", "38000").replace("0.3", "0.8");
+        let steady = steady::solve(&circuit(&text, "")).unwrap();
+        let [unreached] = &steady.unreached[..] else { panic!("{:?}", steady.unreached) };
+        assert!((unreached.reached / most - 1.0).abs() < 1e-3, "{unreached}");
+        assert!((unreached.position - 1.0).abs() < 1e-3, "{unreached}");
+        assert!(steady::solve(&model).unwrap().unreached.is_empty());
+    }
+}
+
+#[test]
+fn a_controller_on_a_pump_holds_its_set_point_or_says_that_it_does_not() {
+    for (measures, low, high) in
+        [("r.m_flow_kg_s", 0.3, 0.6), ("r.dp_pa", 10_000.0, 35_000.0), ("pump.speed", 0.5, 1.5)]
+    {
+        let gain = 0.3 / low;
+        let pi = format!(
+            "[[controller]]\nid = \"pi\"\nkind = \"pi\"\nmeasures = \"{measures}\"\nacts_on = \"pump.speed\"\n\
+             set_point = {low}\ngain = {gain}\nintegral_time_s = 8.0\n"
+        );
+        let model = circuit("speed_min = 0.25", &pi);
+        let said = events(&model, "pi.set_point", [high, low]);
+        let kinds: Vec<&str> = said.iter().map(|(kind, ..)| kind.as_str()).collect();
+        assert_eq!(kinds, ["unreached", "reached"], "{measures}: {said:?}");
+        assert!(said[0].2.contains(measures) && said[0].2.contains("pump.speed"), "{said:?}");
+        // Within 1 % at the end where it is feasible.
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        let time = |s: f64| Time::from_s(s).unwrap();
+        simulation.advance_to(time(600.0), time(1.0)).unwrap();
+        let found = simulation.get(simulation.channel(measures).unwrap());
+        assert!((found / low - 1.0).abs() < 0.01, "{measures}: {found}");
+        assert!(simulation.take_events().next().is_none());
+        assert!(steady::solve(&model).unwrap().unreached.is_empty());
+        let text = pi.replace(&format!("set_point = {low}"), &format!("set_point = {high}"));
+        let steady = steady::solve(&circuit("speed_min = 0.25", &text)).unwrap();
+        assert_eq!(steady.unreached.len(), 1, "{measures}: {:?}", steady.unreached);
+        assert_eq!((steady.unreached[0].position, steady.unreached[0].id.as_str()), (1.0, "pi"));
+    }
+}
+
+#[test]
+fn below_its_least_speed_a_pump_is_off_and_passive() {
+    let flow = |speed: f64| {
+        let model = circuit(&format!("speed_min = 0.25\nspeed = {speed}"), "");
+        steady::solve(&model).unwrap().edge("pump").unwrap().m_flow_kg_s
+    };
+    assert!(flow(0.2).abs() < 1e-9, "{}", flow(0.2));
+    // At 0.25: 0.0625 * 40221/(1e5 + 4.72972e4) = 0.0170663, 0.13064 kg/s.
+    assert!((flow(0.25) - 0.130_64).abs() < 1e-4, "{}", flow(0.25));
+    // Stopped, it is an orifice: 10 kPa of another pump pass sqrt(1e4/4.72972e4) = 0.459814 kg/s, both ways.
+    for head_pa in [1e4, -1e4] {
+        let text = format!(
+            "format = 1\n[pressure_reference]\nnode = \"a\"\n[[node]]\nid = \"a\"\n[[node]]\nid = \"b\"\n\
+             [[edge]]\nid = \"pump\"\nkind = \"pump\"\nfrom = \"a\"\nto = \"b\"\nhead_max_pa = 40221.0\n\
+             free_flow_l_min = 55.33\n[[edge]]\nid = \"other\"\nkind = \"pressure_source\"\nfrom = \"b\"\n\
+             to = \"a\"\nhead_pa = {head_pa:?}\n"
+        );
+        let steady = steady::solve(&Model::from_toml(&text, &workspace()).unwrap()).unwrap();
+        let m = steady.edge("pump").unwrap().m_flow_kg_s;
+        assert!((m.abs() - 0.459_814).abs() < 2e-3 && m * head_pa > 0.0, "{m}");
+    }
 }

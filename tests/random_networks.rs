@@ -87,6 +87,7 @@ fn way_out() -> ElementParams {
         dp_nominal_pa: None,
         m_flow_nominal_kg_s: None,
         delta_m: 0.1,
+        ..ResistanceParams::default()
     })
 }
 
@@ -183,6 +184,7 @@ impl Sample {
             prescriptions: Vec::new(),
             couplings: Vec::new(),
             soil: Vec::new(),
+            regulators: Vec::new(),
         };
         let exchangers = (0..self.edges.len())
             .filter(|&i| matches!(self.edges[i].params, ElementParams::HeatExchanger(_)));

@@ -140,6 +140,7 @@ impl Sample {
             prescriptions: Vec::new(),
             couplings: Vec::new(),
             soil: Vec::new(),
+            regulators: Vec::new(),
         };
         let mut state = NetworkState::new(&network, 300.0);
         for (i, &(p_pa, m_flow_kg_s)) in self.given.iter().enumerate() {

@@ -121,3 +121,95 @@ fn the_plain_model_is_the_same() {
     let again = Model::from_toml(&text, Path::new(".")).unwrap();
     assert_eq!(steady::solve(&again).unwrap(), steady::solve(&model).unwrap());
 }
+
+/// A pulsing mixer with a meter before each way.
+fn pulsing() -> String {
+    let meter = |of: &str| {
+        format!(
+            "[[node]]\nid = \"{of}_metered\"\n[[edge]]\nid = \"meter_{of}\"\nkind = \"heat_meter\"\n\
+             from = \"{of}\"\nto = \"{of}_metered\"\nreturn_node = \"mixed\"\nm_flow_nominal_kg_s = 1\n\
+             dp_nominal_pa = 1000\n"
+        )
+    };
+    let valve = MIXER.replace("a = \"hot\"", "a = \"hot_metered\"");
+    let valve = valve.replace("b = \"cold\"", "b = \"cold_metered\"");
+    let fields = "opening = 0.3\npulse_period_s = 60\nstroke_time_s = 0\nleakage = 0\n";
+    format!("{valve}{fields}{}{}", meter("hot"), meter("cold"))
+}
+
+/// Water in m3 that has passed way a and way b.
+fn volumes(simulation: &Simulation) -> (f64, f64) {
+    let get = |channel: &str| simulation.get(simulation.channel(channel).unwrap());
+    (get("meter_hot.volume_m3"), get("meter_cold.volume_m3"))
+}
+
+#[test]
+fn pulses_have_their_share_of_each_period_whatever_the_step() {
+    // 4 m3/h at 1 bar and the meter 0.01 bar at 3.6 m3/h: v = sqrt(0.5/(1/16 + 0.01/12.96)) = 2.811 m3/h.
+    let open_m3 = (0.5 / (1.0 / 16.0 + 0.01 / 12.96_f64)).sqrt() / 60.0;
+    let plan = build(&model(&pulsing())).unwrap();
+    let time = |s: f64| Time::from_s(s).unwrap();
+    for step_s in [1.0, 7.0, 25.0, 60.0, 3600.0] {
+        let mut simulation = Simulation::new(plan.clone()).unwrap();
+        let share = simulation.signal("mixer.opening").unwrap();
+        let mut before = (0.0, 0.0);
+        let mut passed = |simulation: &mut Simulation, until_s: f64| {
+            simulation.advance_to(time(until_s), time(step_s)).unwrap();
+            let now = volumes(simulation);
+            let passed = ((now.0 - before.0) / open_m3, (now.1 - before.1) / open_m3);
+            before = now;
+            passed
+        };
+        for (period, x) in [0.3, 0.0, 0.77, 1.0, 1.0 / 3.0].into_iter().enumerate() {
+            simulation.set(share, x).unwrap();
+            let (a, b) = passed(&mut simulation, 60.0 * (period as f64 + 1.0));
+            // Exact to the nanosecond of the clock and the residual of the solver.
+            assert!((a - x).abs() < 1e-9 && (b - (1.0 - x)).abs() < 1e-9, "{step_s}, {x}: {a} {b}");
+        }
+        // A new share within a period waits for the next one: half of it, of which 10 s come after 320 s.
+        simulation.set(share, 0.5).unwrap();
+        passed(&mut simulation, 320.0);
+        simulation.set(share, 1.0).unwrap();
+        let (a, b) = passed(&mut simulation, 360.0);
+        assert!((a - 10.0 / 60.0).abs() < 1e-9 && (b - 30.0 / 60.0).abs() < 1e-9, "{a} {b}");
+    }
+}
+
+#[test]
+fn pulses_over_a_step_of_many_periods() {
+    // A step of an hour has 60 periods: the share is exact over it.
+    let mut simulation = Simulation::new(build(&model(&pulsing())).unwrap()).unwrap();
+    let hour = Time::from_s(3600.0).unwrap();
+    simulation.advance_to(hour, hour).unwrap();
+    let (a, b) = volumes(&simulation);
+    assert!((a / (a + b) - 0.3).abs() < 1e-9, "{a} {b}");
+}
+
+#[test]
+fn pulses_settle_in_their_mean_and_survive_a_snapshot() {
+    let text =
+        format!("{MIXER}opening = 0.3\npulse_period_s = 60\nstroke_time_s = 0\nleakage = 0\n");
+    let open = 4.0 / 3.6 * 0.5_f64.sqrt();
+    let (a, b) = flows(&steady::solve(&model(&text)).unwrap());
+    assert!((a / open - 0.3).abs() < 1e-6 && (b / open - 0.7).abs() < 1e-6, "{a} {b}");
+    let mut simulation = Simulation::new(build(&model(&pulsing())).unwrap()).unwrap();
+    let (time, step) = (|s| Time::from_s(s).unwrap(), Time::from_s(5.0).unwrap());
+    simulation.advance_to(time(10.0), step).unwrap();
+    // The command changes, the period keeps its share also over the snapshot: 18 s of 60 s.
+    let share = simulation.signal("mixer.opening").unwrap();
+    simulation.set(share, 0.9).unwrap();
+    let here = simulation.snapshot();
+    simulation.advance_to(time(60.0), step).unwrap();
+    let once = volumes(&simulation);
+    simulation.restore(&here).unwrap();
+    simulation.advance_to(time(60.0), step).unwrap();
+    assert_eq!(once, volumes(&simulation));
+    assert!((once.0 / (once.0 + once.1) - 0.3).abs() < 1e-9, "{once:?}");
+}
+
+#[test]
+fn a_pulsing_valve_is_quick() {
+    let text = format!("{MIXER}opening = 0.3\npulse_period_s = 60\n");
+    let problems = build(&model(&text)).unwrap_err().render(&text);
+    assert!(problems.contains("at most a tenth of pulse_period_s"), "{problems}");
+}

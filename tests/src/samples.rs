@@ -6,12 +6,14 @@
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::ball_valve::BallValveParams;
 use anergy_network::elements::check_valve::CheckValveParams;
+use anergy_network::elements::dp_controller::DpControllerParams;
 use anergy_network::elements::flow_limiter::FlowLimiterParams;
 use anergy_network::elements::flow_source::FlowSourceParams;
 use anergy_network::elements::heat_exchanger::{Arrangement, HeatExchangerParams};
 use anergy_network::elements::heat_meter::HeatMeterParams;
 use anergy_network::elements::overflow_valve::OverflowValveParams;
 use anergy_network::elements::pipe::PipeParams;
+use anergy_network::elements::pressure_reducing_valve::PressureReducingValveParams;
 use anergy_network::elements::pressure_source::PressureSourceParams;
 use anergy_network::elements::pump::{PumpMode, PumpParams};
 use anergy_network::elements::resistance::ResistanceParams;
@@ -35,6 +37,8 @@ pub fn nature(params: &ElementParams) -> Nature {
         ElementParams::Pipe(_)
         | ElementParams::Valve(_)
         | ElementParams::BallValve(_)
+        | ElementParams::DpController(_)
+        | ElementParams::PressureReducingValve(_)
         | ElementParams::Resistance(_)
         | ElementParams::HeatMeter(_)
         | ElementParams::HeatExchanger(_) => Nature::Symmetric,
@@ -59,6 +63,10 @@ pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
         "ball_valve" => ball_valve().prop_map(ElementParams::BallValve).boxed(),
         "overflow_valve" => overflow_valve().prop_map(ElementParams::OverflowValve).boxed(),
         "flow_limiter" => flow_limiter().prop_map(ElementParams::FlowLimiter).boxed(),
+        "dp_controller" => dp_controller().prop_map(ElementParams::DpController).boxed(),
+        "pressure_reducing_valve" => {
+            pressure_reducing_valve().prop_map(ElementParams::PressureReducingValve).boxed()
+        }
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "heat_meter" => heat_meter().prop_map(ElementParams::HeatMeter).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),
@@ -352,6 +360,34 @@ fn overflow_valve() -> impl Strategy<Value = OverflowValveParams> {
     )
 }
 
+fn dp_controller() -> impl Strategy<Value = DpControllerParams> {
+    let numbers = (option::of(0.01..1.0), 0.0..30.0, logarithmic(1e-5, 0.4), 0.005..0.1);
+    (logarithmic(0.1, 1000.0), logarithmic(1e3, 1e6), numbers).prop_map(
+        |(kvs_m3_h, dp_set_pa, (band, lag_s, leakage, delta_m))| DpControllerParams {
+            kvs_m3_h,
+            high_node: "n0".into(),
+            low_node: "n1".into(),
+            dp_set_pa,
+            band_dp_pa: band.map(|share: f64| share * dp_set_pa),
+            lag_s,
+            leakage,
+            delta_m,
+        },
+    )
+}
+
+fn pressure_reducing_valve() -> impl Strategy<Value = PressureReducingValveParams> {
+    (dp_controller(), any::<bool>()).prop_map(|(valve, remote)| PressureReducingValveParams {
+        kvs_m3_h: valve.kvs_m3_h,
+        pressure_set_pa: valve.dp_set_pa,
+        sensed_node: remote.then(|| "n0".into()),
+        band_pressure_pa: valve.band_dp_pa,
+        lag_s: valve.lag_s,
+        leakage: valve.leakage,
+        delta_m: valve.delta_m,
+    })
+}
+
 fn flow_limiter() -> impl Strategy<Value = FlowLimiterParams> {
     let set = prop_oneof![Just(0.0), logarithmic(1e-3, 3.0)];
     (logarithmic(0.1, 1000.0), set, 0.0..30.0, 0.005..0.3).prop_map(
@@ -381,8 +417,27 @@ fn resistance() -> impl Strategy<Value = ResistanceParams> {
         |(dp_pa, m_flow_kg_s, delta_m)| ResistanceParams {
             dp_nominal_pa: Some(dp_pa),
             m_flow_nominal_kg_s: Some(m_flow_kg_s),
-            kv_m3_h: None,
             delta_m,
+            ..ResistanceParams::default()
+        },
+    );
+    let power = (point.clone(), 0.5..4.0)
+        .prop_map(|(point, exponent)| ResistanceParams { exponent: Some(exponent), ..point });
+    let steps = prop::collection::vec((0.1..1.0, 0.1..1.0), 1..6);
+    let curve = (logarithmic(1e-6, 1.0), logarithmic(10.0, 1e6), steps).prop_map(
+        |(v_step, dp_step, steps): (f64, f64, Vec<(f64, f64)>)| {
+            let (mut flows, mut losses) = (vec![0.0], vec![0.0]);
+            for (v, dp) in steps {
+                flows.push(flows[flows.len() - 1] + v_step * v);
+                losses.push(losses[losses.len() - 1] + dp_step * dp);
+            }
+            ResistanceParams {
+                dp_nominal_pa: None,
+                m_flow_nominal_kg_s: None,
+                curve_v_flow_m3_s: flows,
+                curve_dp_pa: losses,
+                ..ResistanceParams::default()
+            }
         },
     );
     let kv = (logarithmic(0.1, 1000.0), option::of(logarithmic(0.1, 5.0)), 0.005..0.5).prop_map(
@@ -391,9 +446,10 @@ fn resistance() -> impl Strategy<Value = ResistanceParams> {
             m_flow_nominal_kg_s: nominal.map(|share| share * at_a_tenth_of_a_bar_kg_s(kv_m3_h)),
             kv_m3_h: Some(kv_m3_h),
             delta_m,
+            ..ResistanceParams::default()
         },
     );
-    prop_oneof![point, kv]
+    prop_oneof![2 => point, 2 => kv, 1 => power, 1 => curve]
 }
 
 fn heat_exchanger() -> impl Strategy<Value = HeatExchangerParams> {

@@ -95,7 +95,10 @@ fn water_that_boils_ends_a_run_that_can_be_reported() {
     let message = text(&run.stderr);
     assert!(message.contains("at 20m 30s: the water at \"oven\""), "{message}");
     assert!(message.contains("valid from 0.5 to 99 degC"), "{message}");
-    assert_eq!(anergy(&["report", "out/results.mcap", "--out", "kept.html"], dir.path()).status.code(), Some(0));
+    assert_eq!(
+        anergy(&["report", "out/results.mcap", "--out", "kept.html"], dir.path()).status.code(),
+        Some(0)
+    );
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Numerical building blocks.
 
+pub mod dense;
 mod elimination;
 pub mod interpolate;
 pub mod regularize;

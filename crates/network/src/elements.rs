@@ -2,15 +2,18 @@
 
 pub mod ball_valve;
 pub mod check_valve;
+pub mod dp_controller;
 pub mod flow_limiter;
 pub mod flow_source;
 pub mod heat_exchanger;
 pub mod heat_meter;
 pub mod overflow_valve;
 pub mod pipe;
+pub mod pressure_reducing_valve;
 pub mod pressure_source;
 pub mod pump;
 pub mod resistance;
+pub mod self_acting;
 pub mod valve;
 
 use crate::two_port::{ElementError, TwoPort};
@@ -25,6 +28,8 @@ anergy_core::registry! {
         BallValve("ball_valve", ball_valve::BallValve, ball_valve::BallValveParams),
         OverflowValve("overflow_valve", overflow_valve::OverflowValve, overflow_valve::OverflowValveParams),
         FlowLimiter("flow_limiter", flow_limiter::FlowLimiter, flow_limiter::FlowLimiterParams),
+        DpController("dp_controller", self_acting::SelfActing, dp_controller::DpControllerParams),
+        PressureReducingValve("pressure_reducing_valve", self_acting::SelfActing, pressure_reducing_valve::PressureReducingValveParams),
         CheckValve("check_valve", check_valve::CheckValve, check_valve::CheckValveParams),
         Resistance("resistance", resistance::Resistance, resistance::ResistanceParams),
         HeatExchanger("heat_exchanger", heat_exchanger::HeatExchanger, heat_exchanger::HeatExchangerParams),

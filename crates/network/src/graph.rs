@@ -104,6 +104,8 @@ pub struct Network {
     pub couplings: Vec<Coupling>,
     /// Soil around pipes that stores heat.
     pub soil: Vec<SoilRings>,
+    /// Self-acting valves.
+    pub regulators: Vec<Regulator>,
 }
 
 /// Two pipes side by side and the heat conductance between their contents.
@@ -115,6 +117,32 @@ pub struct Coupling {
     pub reversed: bool,
     /// Heat conductance between the two over the whole length, W/K.
     pub conductance_w_k: f64,
+}
+
+/// How a self-acting valve answers to the pressure it senses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Regulation {
+    /// Name of the set value, in SI.
+    pub name: &'static str,
+    /// Set value while nothing drives it, Pa: it begins to close here.
+    pub set_pa: f64,
+    /// Rise of the pressure over which it closes, Pa.
+    pub band_pa: f64,
+    /// Time constant, s.
+    pub lag_s: f64,
+}
+
+/// A self-acting valve in its network.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Regulator {
+    /// The valve.
+    pub edge: EdgeId,
+    /// Node whose pressure counts.
+    pub high: NodeId,
+    /// Node whose pressure is taken off; the atmosphere where there is none.
+    pub low: Option<NodeId>,
+    /// How it answers.
+    pub regulation: Regulation,
 }
 
 /// A quantity that is given, and the actuator that is free in its place.

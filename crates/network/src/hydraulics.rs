@@ -14,16 +14,18 @@
 //! **Sources** Todini and Pilati 1988, Collins et al. 1978 (keys `todini1988`, `collins1978`).
 
 mod assemble;
+mod diagnosis;
 mod error;
 mod ideal;
 mod position;
 mod prescribed;
 mod reconsider;
+mod regulated;
 
 use crate::graph::{Edge, Network};
 use crate::state::NetworkState;
 use crate::two_port::{Characteristic, EdgeState};
-use anergy_core::ids::{EdgeId, NodeId};
+use anergy_core::ids::EdgeId;
 use anergy_core::linear::Linear;
 use assemble::NodalSystem;
 pub use error::HydraulicError;
@@ -116,6 +118,8 @@ pub struct HydraulicSolver {
     carried: Vec<Option<f64>>,
     /// Whether each prescription was tried with its actuator open in this solve.
     opened: Vec<bool>,
+    heads: prescribed::Heads,
+    openings: regulated::Openings,
 }
 
 impl HydraulicSolver {
@@ -144,6 +148,8 @@ impl HydraulicSolver {
             },
             carried: prescribed::carried(network),
             opened: vec![false; network.prescriptions.len()],
+            heads: prescribed::Heads::new(network),
+            openings: regulated::Openings::new(network),
         })
     }
 
@@ -160,14 +166,27 @@ impl HydraulicSolver {
         if state.hydraulics_valid {
             return Ok(HydraulicReport::default());
         }
-        let report = if network.prescriptions.is_empty() {
-            self.solve_laws(network, state)?
+        let report = if network.regulators.is_empty() {
+            self.solve_given(network, state)?
         } else {
-            self.solve_prescribed(network, state)?
+            self.solve_regulated(network, state)?
         };
         self.check_references(network, state)?;
         state.hydraulics_valid = true;
         Ok(report)
+    }
+
+    /// Solves at the present openings of the self-acting valves.
+    fn solve_given(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+    ) -> Result<HydraulicReport, HydraulicError> {
+        if network.prescriptions.is_empty() {
+            self.solve_laws(network, state)
+        } else {
+            self.solve_prescribed(network, state)
+        }
     }
 
     /// Solves with the laws, or what stands for them.
@@ -338,55 +357,5 @@ impl HydraulicSolver {
             }
         }
         Ok(trial)
-    }
-
-    /// Who is to blame at the iteration limit.
-    fn not_converged(&mut self, network: &Network, state: &NetworkState) -> HydraulicError {
-        let mut worst = (0.0, 0);
-        for i in 0..network.edges.len() {
-            let miss = (self.system.driving_pa(state, i) - self.laws.loss[i]).abs();
-            if self.kind[i] == Kind::Law && miss > worst.0 {
-                worst = (miss, i);
-            }
-        }
-        let dp_pa = |i: usize| state.dp_pa(network, i);
-        let steepest = (0..network.edges.len())
-            .filter(|&i| self.kind[i] == Kind::Law)
-            .max_by(|&i, &j| dp_pa(i).abs().total_cmp(&dp_pa(j).abs()));
-        if let Some(i) = steepest.filter(|&i| dp_pa(i).abs() > ABSURD_PA) {
-            return HydraulicError::Absurd {
-                edge: EdgeId::from_index(i),
-                dp_pa: dp_pa(i),
-                m_flow_kg_s: state.m_flow_kg_s[i],
-            };
-        }
-        let (mass_residual_kg_s, node) = self.system.mass_residual(state);
-        HydraulicError::NotConverged {
-            iterations: MAX_ITERATIONS,
-            edge: EdgeId::from_index(worst.1),
-            residual_pa: worst.0,
-            node: NodeId::from_index(node),
-            mass_residual_kg_s,
-        }
-    }
-
-    /// A pressure reference exchanges no water.
-    fn check_references(
-        &self,
-        network: &Network,
-        state: &NetworkState,
-    ) -> Result<(), HydraulicError> {
-        for (i, node) in network.nodes.iter().enumerate() {
-            let exchange = state.exchange_kg_s[i];
-            if node.kind == crate::graph::NodeKind::PressureReference
-                && exchange.abs() > REFERENCE_EXCHANGE_KG_S
-            {
-                return Err(HydraulicError::Unbalanced {
-                    node: NodeId::from_index(i),
-                    m_flow_kg_s: -exchange,
-                });
-            }
-        }
-        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! Everything of a network that changes during a run: plain data, cloned by a snapshot.
 
-use crate::graph::{Network, NodeKind};
+use crate::graph::{Network, NodeKind, Regulator};
 use crate::soil::SoilRings;
 use crate::transport::cells::Cells;
 use crate::transport::parcels::Parcels;
@@ -39,6 +39,8 @@ pub struct NetworkState {
     pub law_water: Vec<LawWater>,
     /// Value and state of each prescription of the network.
     pub prescribed: Vec<Prescribed>,
+    /// Each self-acting valve of the network.
+    pub regulated: Vec<Regulated>,
     /// Whether flows and pressures belong to the present positions and boundary values.
     pub(crate) hydraulics_valid: bool,
     /// Temperature of each node, K.
@@ -84,6 +86,17 @@ pub struct LawWater {
     pub viscosity_pa_s: f64,
 }
 
+/// A self-acting valve during a step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Regulated {
+    /// Set value, Pa.
+    pub set_pa: f64,
+    /// Opening at the start of the step.
+    pub(crate) from: f64,
+    /// Share of the way to where it wants to be that it goes in the step; 1 is the steady state.
+    pub(crate) share: f64,
+}
+
 /// A prescription at the moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Prescribed {
@@ -112,7 +125,11 @@ impl NetworkState {
         let initial_position = |edge: &crate::graph::Edge| {
             edge.element.actuator().map_or(0.0, |actuator| actuator.initial_position)
         };
-        let position: Vec<f64> = network.edges.iter().map(initial_position).collect();
+        let mut position: Vec<f64> = network.edges.iter().map(initial_position).collect();
+        for regulator in &network.regulators {
+            // Without pressure the spring opens it.
+            position[regulator.edge.index()] = 1.0;
+        }
         Self {
             m_flow_kg_s: network
                 .edges
@@ -131,6 +148,11 @@ impl NetworkState {
             density_kg_m3: Vec::new(),
             law_water: Vec::new(),
             prescribed: vec![Prescribed::default(); network.prescriptions.len()],
+            regulated: network
+                .regulators
+                .iter()
+                .map(|r| Regulated { set_pa: r.regulation.set_pa, from: 1.0, share: 1.0 })
+                .collect(),
             hydraulics_valid: false,
             t_node_k: vec![initial_k; nodes],
             t_edge_k: vec![initial_k; edges],
@@ -217,6 +239,43 @@ impl NetworkState {
         }
     }
 
+    /// Sets the set value of a self-acting valve, Pa.
+    pub fn set_regulator(&mut self, regulator: usize, set_pa: f64) {
+        let regulated = &mut self.regulated[regulator];
+        if regulated.set_pa != set_pa {
+            regulated.set_pa = set_pa;
+            self.hydraulics_valid = false;
+        }
+    }
+
+    /// Begins a step of all self-acting valves; infinite `dt_s` settles them. Those that are not where
+    /// they want to be move with the next solve.
+    pub fn advance_regulators(&mut self, network: &Network, dt_s: f64) {
+        for (k, regulator) in network.regulators.iter().enumerate() {
+            let from = self.position[regulator.edge.index()];
+            let share = -(-dt_s / regulator.regulation.lag_s).exp_m1();
+            let share = if regulator.regulation.lag_s > 0.0 { share.max(LEAST_SHARE) } else { 1.0 };
+            let set_pa = self.regulated[k].set_pa;
+            self.regulated[k] = Regulated { set_pa, from, share };
+            if share * (self.wanted_opening(regulator, set_pa) - from).abs() > REGULATED {
+                self.hydraulics_valid = false;
+            }
+        }
+    }
+
+    /// Where the pressures of now make a self-acting valve go.
+    pub(crate) fn wanted_opening(&self, regulator: &Regulator, set_pa: f64) -> f64 {
+        self.wanted_beyond(regulator, set_pa).clamp(0.0, 1.0)
+    }
+
+    /// The same on the straight line that goes on beyond the ends.
+    pub(crate) fn wanted_beyond(&self, regulator: &Regulator, set_pa: f64) -> f64 {
+        let low_pa = regulator.low.map_or(0.0, |node| self.p_pa[node.index()]);
+        let sensed_pa = self.p_pa[regulator.high.index()] - low_pa;
+        let band_pa = regulator.regulation.band_pa;
+        (set_pa + band_pa - sensed_pa) / band_pa
+    }
+
     /// Puts the actuator of an edge where the solver found it.
     pub(crate) fn place_actuator(&mut self, edge: usize, position: f64) {
         self.actuator_lag[edge] = position;
@@ -288,6 +347,10 @@ const RISE_TO_LAG: f64 = 0.128_718_850_581_116_7;
 /// An actuator that follows a flow stays while its target is nearer than this share of its range, so that
 /// the two do not chase each other over rounding errors.
 const FOLLOWED: f64 = 1e-7;
+/// A step is at least so long over the lag of a self-acting valve.
+const LEAST_SHARE: f64 = 1e-9;
+/// A self-acting valve has its opening within this.
+pub(crate) const REGULATED: f64 = 1e-9;
 /// An actuator this close to its target has arrived.
 const SETTLED: f64 = 1e-9;
 
@@ -338,6 +401,7 @@ mod tests {
             prescriptions: vec![],
             couplings: vec![],
             soil: vec![],
+            regulators: vec![],
         };
         // After the rise time x = 5/sqrt(sqrt 2 - 1) = 7.769: 1 - (1 + x) e^-x = 0.99630
         let run = |steps: i32| {

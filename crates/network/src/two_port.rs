@@ -5,6 +5,7 @@
 //! a component never sees the matrix.
 
 use crate::film::nusselt;
+use crate::graph::Regulation;
 use anergy_core::linear::Linear;
 use thiserror::Error;
 
@@ -218,6 +219,11 @@ pub trait TwoPort {
     /// The position that a command asks for at a flow.
     fn target_at_flow(&self, command: f64, _m_flow_kg_s: f64) -> f64 {
         self.target_position(command)
+    }
+
+    /// The pressure that the element holds by itself, if it does.
+    fn regulation(&self) -> Option<Regulation> {
+        None
     }
 
     /// Electric power drawn, W; `None` for elements without a motor.

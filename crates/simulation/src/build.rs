@@ -6,6 +6,8 @@ mod meters;
 mod network;
 mod prescribed;
 mod pressure;
+mod pulses;
+mod regulators;
 mod signals;
 
 pub(crate) use network::pipe_temperatures;
@@ -13,7 +15,7 @@ pub(crate) use network::pipe_temperatures;
 use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
-use crate::plan::{Plan, PlannedUnit, WorstPoint};
+use crate::plan::{Plan, PlannedUnit};
 use crate::state::{Reading, State};
 use crate::wording::refused;
 use anergy_core::clock::Time;
@@ -127,6 +129,7 @@ impl Builder<'_> {
         let whole = edges.len() == model.edges.len();
         let prescriptions =
             if whole { self.prescriptions(&node_ids, &edge_ids, &edges) } else { Vec::new() };
+        let regulators = if whole { self.regulators(&node_ids, &edges) } else { Vec::new() };
         let network = Network {
             medium: model.medium,
             gravity_m_s2: model.gravity_m_s2,
@@ -136,6 +139,7 @@ impl Builder<'_> {
             prescriptions,
             couplings,
             soil,
+            regulators,
         };
         if whole && self.problems.is_empty() {
             self.check_graph(&network);
@@ -149,6 +153,7 @@ impl Builder<'_> {
         } else {
             vec![None; model.edges.len()]
         };
+        let regulators = self.regulator_signals(&network.regulators, &mut signals);
         let surroundings = self.surroundings(&mut signals, ground, &by_depth);
         let units = self.units(&edge_ids, &network, &commands, &mut signals, &mut writers);
         let stations = self.stations(&edge_ids);
@@ -183,6 +188,8 @@ impl Builder<'_> {
         let meters = self.meters(&node_ids);
         let mut initial = self.initial_state(&network, &units, &stations, &signals);
         initial.meters = vec![Reading::default(); meters.len()];
+        let (pulses, pulse_of) = self.pulses(&commands);
+        initial.pulse_shares = vec![0.0; pulses.len()];
         initial.vessels = vec![VesselState::default(); vessels.len()];
         initial.crossed = vec![false; pressure_watches.len()];
         let mut plan = Plan {
@@ -195,10 +202,14 @@ impl Builder<'_> {
             controllers: Vec::new(),
             worst_points,
             prescriptions,
+            regulators,
             vessels,
             meters,
             pipes: pipes(&network),
+            pulses,
+            pulse_of,
             pressure_watches,
+            targets: Vec::new(),
             drivers,
             signals,
             commands,
@@ -221,6 +232,7 @@ impl Builder<'_> {
         };
         (plan.channels, plan.sources) = channels::channels(&plan);
         self.controllers(&mut plan, &controller_signals, &mut writers);
+        self.targets(&mut plan);
         Some(plan)
     }
 
@@ -260,26 +272,6 @@ impl Builder<'_> {
         stations
     }
 
-    fn worst_points(&mut self, node_ids: &HashMap<&str, usize>) -> Vec<WorstPoint> {
-        let mut points = Vec::new();
-        for spec in &self.model.worst_points {
-            let mut find = |name: &str| {
-                let found = node_ids.get(name).copied();
-                if found.is_none() {
-                    let what = format!("worst_point \"{}\"", spec.entry.id);
-                    let hint = did_you_mean(name, node_ids.keys().copied());
-                    let message = format!("{what}: between names no node: \"{name}\"");
-                    self.report(message, spec.place.of("between"), hint);
-                }
-                found
-            };
-            let pairs = spec.entry.between.iter();
-            let between = pairs.filter_map(|(a, b)| find(a).zip(find(b))).collect();
-            points.push(WorstPoint { name: spec.entry.id.clone(), between });
-        }
-        points
-    }
-
     fn run_times(&mut self) -> (Time, Time, Time) {
         let run = &self.model.run;
         (run.step.0, run.record.0, run.until.0)
@@ -306,8 +298,10 @@ impl Builder<'_> {
             stations: vec![StationState::default(); stations.len()],
             station_heat_j: vec![0.0; stations.len()],
             meters: Vec::new(),
+            pulse_shares: Vec::new(),
             vessels: Vec::new(),
             crossed: Vec::new(),
+            missed: Vec::new(),
             controller_states: Vec::new(),
             next_tick: Vec::new(),
             last_tick: Vec::new(),

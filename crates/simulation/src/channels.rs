@@ -221,7 +221,10 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
                 list.add(group, name, "q_flow_w", "W", Source::EdgeHeat(i));
             }
         }
-        Element::Valve(_) | Element::BallValve(_) => {
+        Element::Valve(_)
+        | Element::BallValve(_)
+        | Element::DpController(_)
+        | Element::PressureReducingValve(_) => {
             list.add(group, name, "opening", "1", Source::EdgePosition(i));
         }
         Element::FlowLimiter(_) => {

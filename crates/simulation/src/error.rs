@@ -69,6 +69,19 @@ pub enum RunError {
         /// What is the matter.
         problem: &'static str,
     },
+    /// A self-acting valve does not come to rest within a step.
+    #[error(
+        "at {time}: the self-acting valve \"{valve}\" finds no opening that fits the pressure it senses (it \
+         misses one by {miss:.3e}); do several valves work against each other? A wider band calms them"
+    )]
+    Hunting {
+        /// Simulated time.
+        time: String,
+        /// The valve.
+        valve: String,
+        /// Largest miss of an opening.
+        miss: f64,
+    },
     /// A component got or gave a number that is not finite.
     #[error("at {time}: {component} has a value that is not a finite number")]
     NotFinite {
@@ -159,6 +172,12 @@ pub enum RunError {
 impl RunError {
     /// Whether the numerics failed (and not the model or the disk).
     pub fn is_numerical(&self) -> bool {
-        matches!(self, Self::NotConverged { .. } | Self::Singular { .. } | Self::NotSettled { .. })
+        matches!(
+            self,
+            Self::NotConverged { .. }
+                | Self::Singular { .. }
+                | Self::NotSettled { .. }
+                | Self::Hunting { .. }
+        )
     }
 }

@@ -37,6 +37,9 @@ pub(crate) struct PlannedController {
     pub name: String,
     pub controller: LocalController,
     pub measures: Source,
+    pub measured_name: String,
+    /// From where the measured value counts: 0 degC for a temperature.
+    pub zero: f64,
     pub set_point: SignalId,
     pub acts_on: SignalId,
     pub interval: Time,
@@ -73,6 +76,24 @@ pub(crate) struct PlannedMeter {
     pub other_node: usize,
     /// Whether the flow sensor is in the supply and the other one in the return.
     pub in_supply: bool,
+}
+
+/// What is to be held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// The set value of the pump on an edge.
+    Pump(usize),
+    /// The set point of a controller.
+    Controller(usize),
+}
+
+/// A valve that is open for a share of each period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Pulse {
+    pub edge: usize,
+    /// The share.
+    pub command: SignalId,
+    pub period: Time,
 }
 
 /// A limit of the pressures of some nodes.
@@ -115,11 +136,17 @@ pub struct Plan {
     pub(crate) controllers: Vec<PlannedController>,
     pub(crate) worst_points: Vec<WorstPoint>,
     pub(crate) prescriptions: Vec<PlannedPrescription>,
+    /// Set value of each self-acting valve of the network.
+    pub(crate) regulators: Vec<SignalId>,
     pub(crate) vessels: Vec<Vessel>,
     pub(crate) meters: Vec<PlannedMeter>,
     /// Edges that are pipes.
     pub(crate) pipes: Vec<usize>,
+    pub(crate) pulses: Vec<Pulse>,
+    /// Pulse of each edge that has one.
+    pub(crate) pulse_of: Vec<Option<usize>>,
     pub(crate) pressure_watches: Vec<PressureWatch>,
+    pub(crate) targets: Vec<Target>,
     pub(crate) drivers: Vec<Driver>,
     pub(crate) signals: SignalTable,
     /// Command signal of each edge.

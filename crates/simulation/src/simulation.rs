@@ -5,6 +5,8 @@ mod actuators;
 mod meters;
 mod pipes;
 mod pressure;
+mod pulses;
+mod saturation;
 mod validity;
 mod words;
 
@@ -25,6 +27,7 @@ use anergy_network::transport::Transport;
 pub(crate) use pipes::stored_j;
 pub use pressure::Crossing;
 pub(crate) use pressure::crossings;
+pub(crate) use saturation::{Missed, missed_now};
 use std::sync::Arc;
 pub use words::Unreached;
 use words::{blocked_event, named, prescribed_event};
@@ -89,13 +92,18 @@ impl Simulation {
         Ok(())
     }
 
-    /// Advances to `end` in one step: sense, control, inputs, actuators, unit requests, hydraulics,
+    /// Advances towards `end` in one step, which a pulsing valve may end earlier: sense, control, inputs, actuators, unit requests, hydraulics,
     /// transport, units, flags, balances.
     fn step_to(&mut self, end: Time) -> Result<(), RunError> {
         let now = self.state.time;
-        let dt_s = (end - now).as_s();
         self.control(now)?;
         self.drive_inputs(end);
+        let latest = end;
+        let end = self.begin_pulses(now, latest);
+        if end < latest {
+            self.drive_inputs(end);
+        }
+        let dt_s = (end - now).as_s();
         self.request_units();
         self.apply_inputs();
         self.move_actuators(dt_s);
@@ -106,6 +114,7 @@ impl Simulation {
         self.state.network.advance_soil(&self.plan.network.soil, dt_s);
         self.advance_units(dt_s);
         self.watch_stations(end, dt_s);
+        self.watch_targets(end, dt_s);
         self.book(dt_s);
         self.book_pipes(dt_s);
         self.read_meters(dt_s);
@@ -227,6 +236,9 @@ impl Simulation {
         }
         for (k, prescription) in self.plan.prescriptions.iter().enumerate() {
             self.state.network.prescribe(k, signals[prescription.signal.index()]);
+        }
+        for (k, signal) in self.plan.regulators.iter().enumerate() {
+            self.state.network.set_regulator(k, signals[signal.index()]);
         }
         self.state.network.ambient_k = signals[self.plan.ground.index()];
         for (around, (id, difference_k)) in

@@ -1,6 +1,7 @@
 //! The state of a simulation: plain data, so that a clone or its bytes are a snapshot.
 
 use crate::error::RunError;
+use crate::simulation::Missed;
 use anergy_core::clock::Time;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::StationState;
@@ -42,9 +43,13 @@ pub struct State {
     pub(crate) stations: Vec<StationState>,
     pub(crate) station_heat_j: Vec<f64>,
     pub(crate) meters: Vec<Reading>,
+    /// Share of the present period for which each pulsing valve is open.
+    pub(crate) pulse_shares: Vec<f64>,
     pub(crate) vessels: Vec<VesselState>,
     /// Whether each watched limit is crossed.
     pub(crate) crossed: Vec<bool>,
+    /// What is remembered of each target.
+    pub(crate) missed: Vec<Missed>,
     pub(crate) controller_states: Vec<f64>,
     pub(crate) next_tick: Vec<Time>,
     pub(crate) last_tick: Vec<Time>,

@@ -300,6 +300,16 @@ impl Pump {
         self.curve.speed_at(m_flow_kg_s, dp_pa, density_kg_m3, self.speed_max)
     }
 
+    /// Whether the pump holds a value other than its speed.
+    pub fn holds(&self) -> bool {
+        self.mode != PumpMode::Speed
+    }
+
+    /// Whether what it holds is a flow, and not a head.
+    pub fn holds_flow(&self) -> bool {
+        self.mode == PumpMode::Flow
+    }
+
     /// Whether the losses of the pump warm the water that passes.
     pub fn warms_water(&self) -> bool {
         self.heat_to_water.is_some()

@@ -7,7 +7,9 @@
 //! at the seat is made finite: `y (y^2 + delta^2)^((1/alpha - 1)/2)` for the power, scaled to 1 at full
 //! stroke. Table `phi = l + (1 - l) f(y)` with a monotone curve f through the points. With
 //! `command = "kappa"` the command is the wanted phi. An inverse valve takes `1 - command`, a switching
-//! one `0` or `1`.
+//! one `0` or `1`. A pulsing valve (`pulse_period_s` = T) with the command x is open for `x T`, then closed
+//! for `(1 - x) T`, as events of the run; its steady state is the opening x, which at constant pressure
+//! difference passes the mean flow where the characteristic is linear.
 //!
 //! **Assumptions** fully turbulent. **Numerics** the square law is regularised below `delta_m` times
 //! the nominal flow; a closed tight valve is a prescribed flow of zero.
@@ -26,6 +28,8 @@ use curve::{Curve, FOOT};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Longest stroke of a pulsing valve over its period.
+const SLOWEST_STROKE: f64 = 0.1;
 /// A relative flow coefficient below this is a closed valve.
 const CLOSED: f64 = 1e-6;
 
@@ -93,6 +97,10 @@ pub struct ValveParams {
     /// takes any opening.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub switch_at: Option<f64>,
+    /// Period of a pulsing valve, s: it is open for the share of each period that its command has at the
+    /// beginning of the period, then closed. Absent: the command is an opening.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pulse_period_s: Option<f64>,
     /// Opening commanded while nothing drives it. Not with `command = "kappa"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub opening: Option<f64>,
@@ -147,6 +155,7 @@ impl Default for ValveParams {
             command_of: None,
             inverse: false,
             switch_at: None,
+            pulse_period_s: None,
             opening: None,
             kappa: None,
             initial_opening: None,
@@ -194,6 +203,7 @@ impl ValveParams {
             // At 0 it could never close.
             positive("switch_at", ratio("switch_at", switch_at)?)?;
         }
+        self.check_pulse()?;
         let m_flow_nominal_kg_s = match self.m_flow_nominal_kg_s {
             Some(m) => positive("m_flow_nominal_kg_s", m)?,
             None => k_open * 1e4_f64.sqrt(),
@@ -221,6 +231,24 @@ impl ValveParams {
         valve.actuator.initial_position =
             ratio("initial_opening", self.initial_opening.unwrap_or(target))?;
         Ok(valve)
+    }
+
+    /// A pulsing valve is open or closed for most of its period.
+    fn check_pulse(&self) -> Result<(), ElementError> {
+        let Some(period_s) = self.pulse_period_s else { return Ok(()) };
+        positive("pulse_period_s", period_s)?;
+        if self.command == ValveCommand::Kappa || self.switch_at.is_some() {
+            let problem = "pulse_period_s goes neither with command = \"kappa\" nor with switch_at";
+            return Err(ElementError::Fields { problem: problem.into() });
+        }
+        if self.stroke_time_s > SLOWEST_STROKE * period_s {
+            return Err(ElementError::OutOfRange {
+                field: "stroke_time_s",
+                value: self.stroke_time_s,
+                requirement: "must be at most a tenth of pulse_period_s; 0 for exact shares",
+            });
+        }
+        Ok(())
     }
 
     /// The characteristic with its parameters checked.
@@ -257,6 +285,13 @@ impl ValveParams {
                 Curve::table(self.leakage, &self.table_opening, &self.table_phi)
             }
         }
+    }
+}
+
+impl Valve {
+    /// The actuator, for elements that are a valve with other words.
+    pub(super) fn own_actuator(&self) -> Actuator {
+        self.actuator
     }
 }
 

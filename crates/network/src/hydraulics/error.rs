@@ -66,6 +66,14 @@ pub enum HydraulicError {
         /// The free edge.
         edge: EdgeId,
     },
+    /// A self-acting valve does not come to rest.
+    #[error("the self-acting valve on edge {} misses its opening by {miss}", .edge.0)]
+    Hunting {
+        /// The valve.
+        edge: EdgeId,
+        /// Largest miss of an opening.
+        miss: f64,
+    },
     /// The nodal matrix could not be factorised.
     #[error(transparent)]
     Factor(#[from] FactorError),

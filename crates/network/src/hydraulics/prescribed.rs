@@ -18,7 +18,7 @@ use crate::state::{Hold, NetworkState, Prescribed};
 use crate::two_port::Characteristic;
 use anergy_core::ids::EdgeId;
 use anergy_core::linear::Linear;
-use nalgebra::{DMatrix, DVector};
+use anergy_core::numerics::dense::DenseSystem;
 
 /// A prescribed flow and pressure are met within these.
 pub(super) const FLOW_KG_S: f64 = 1e-8;
@@ -40,6 +40,30 @@ pub(super) enum Stand {
     Flow(f64),
     /// `dp = slope m - head`.
     Head { slope: f64, head: f64 },
+}
+
+/// Work space for the heads of the free edges and for what changes between solves.
+#[derive(Debug, Default)]
+pub(super) struct Heads {
+    /// The prescriptions whose head is sought.
+    sought: Vec<usize>,
+    /// What they miss, in tolerances; then the change of their heads.
+    change: Vec<f64>,
+    system: DenseSystem,
+    /// Prescriptions that change between held and limit, with how much they miss.
+    changes: Vec<(f64, usize, Hold)>,
+}
+
+impl Heads {
+    pub(super) fn new(network: &Network) -> Self {
+        let n = network.prescriptions.len();
+        Self {
+            sought: Vec::with_capacity(n),
+            change: Vec::with_capacity(n),
+            system: DenseSystem::with_room(n),
+            changes: Vec::with_capacity(n),
+        }
+    }
 }
 
 impl Stand {
@@ -132,18 +156,17 @@ impl HydraulicSolver {
                 Err(HydraulicError::Unbalanced { .. }) if self.reopen(network, state) => continue,
                 other => other?,
             };
-            let mut changes = self.changes(network, state);
-            if changes.is_empty() {
+            self.find_changes(network, state);
+            if self.heads.changes.is_empty() {
                 return Ok(HydraulicReport { iterations, ..report });
             }
-            if round >= ROUNDS_TOGETHER {
-                changes.truncate(1);
-            }
-            for (k, hold) in changes {
+            let together = if round >= ROUNDS_TOGETHER { 1 } else { count };
+            for &(_, k, hold) in self.heads.changes.iter().take(together) {
                 state.prescribed[k].hold = hold;
             }
         }
-        let culprit = self.changes(network, state).first().map_or(0, |change| change.0);
+        self.find_changes(network, state);
+        let culprit = self.heads.changes.first().map_or(0, |change| change.1);
         Err(HydraulicError::Undecided { edge: network.prescriptions[culprit].free })
     }
 
@@ -184,80 +207,90 @@ impl HydraulicSolver {
         state: &mut NetworkState,
         iterations: &mut u32,
     ) -> Result<HydraulicReport, HydraulicError> {
-        let sought: Vec<usize> = (0..network.prescriptions.len())
-            .filter(|&k| {
-                let free = network.prescriptions[k].free.index();
-                matches!(self.stand[free], Stand::Head { .. })
-            })
-            .collect();
-        let mut last: Option<(f64, DVector<f64>)> = None;
+        self.heads.sought.clear();
+        for (k, prescription) in network.prescriptions.iter().enumerate() {
+            if matches!(self.stand[prescription.free.index()], Stand::Head { .. }) {
+                self.heads.sought.push(k);
+            }
+        }
+        // How much the heads missed before their last change.
+        let mut before: Option<f64> = None;
         for _ in 0..MAX_NEWTON {
             let report = self.solve_laws(network, state)?;
             *iterations += report.iterations;
             self.check_floating(network)?;
-            let errors = DVector::from_iterator(
-                sought.len(),
-                sought.iter().map(|&k| {
-                    let quantity = network.prescriptions[k].quantity;
-                    let target = state.prescribed[k].value;
-                    (target - present(network, state, quantity)) / tolerance(quantity, target)
-                }),
-            );
-            let norm = errors.amax();
-            if sought.is_empty() || norm <= 1.0 {
+            let miss = |k: usize| {
+                let quantity = network.prescriptions[k].quantity;
+                let target = state.prescribed[k].value;
+                (target - present(network, state, quantity)) / tolerance(quantity, target)
+            };
+            let norm = self.heads.sought.iter().fold(0.0_f64, |norm, &k| norm.max(miss(k).abs()));
+            if norm <= 1.0 {
                 return Ok(report);
             }
-            let change = match last.take() {
+            match before {
                 // Overshot: half the way back.
-                Some((before, change)) if norm > before => {
-                    let back = change * -0.5;
-                    last = Some((before, -back.clone()));
-                    back
+                Some(last) if norm > last => {
+                    self.heads.change.iter_mut().for_each(|change| *change *= -0.5);
+                    self.take_heads(network);
+                    // From here it would be half the way on.
+                    self.heads.change.iter_mut().for_each(|change| *change *= -1.0);
                 }
                 _ => {
-                    let change = self.head_changes(network, state, &sought, &errors)?;
-                    last = Some((norm, change.clone()));
-                    change
-                }
-            };
-            for (&k, change) in sought.iter().zip(&change) {
-                let free = network.prescriptions[k].free.index();
-                if let Stand::Head { head, .. } = &mut self.stand[free] {
-                    *head += change;
+                    self.heads.change.clear();
+                    self.heads.change.extend(self.heads.sought.iter().map(|&k| miss(k)));
+                    self.head_changes(network, state)?;
+                    self.take_heads(network);
+                    before = Some(norm);
                 }
             }
             state.invalidate_hydraulics();
         }
-        let free = sought.first().map_or(0, |&k| network.prescriptions[k].free.index());
+        let free = self.heads.sought.first();
+        let free = free.map_or(0, |&k| network.prescriptions[k].free.index());
         Err(HydraulicError::Undecided { edge: EdgeId::from_index(free) })
     }
 
-    /// Changes of the heads that remove the errors, from the sensitivities.
+    /// Adds the changes to the heads.
+    fn take_heads(&mut self, network: &Network) {
+        for (&k, change) in self.heads.sought.iter().zip(&self.heads.change) {
+            let free = network.prescriptions[k].free.index();
+            if let Stand::Head { head, .. } = &mut self.stand[free] {
+                *head += change;
+            }
+        }
+    }
+
+    /// Turns what the prescriptions miss into the changes of the heads, by the sensitivities.
     fn head_changes(
         &mut self,
         network: &Network,
         state: &NetworkState,
-        sought: &[usize],
-        errors: &DVector<f64>,
-    ) -> Result<DVector<f64>, HydraulicError> {
-        let mut jacobian = DMatrix::zeros(sought.len(), sought.len());
-        for (column, &k) in sought.iter().enumerate() {
-            let free = network.prescriptions[k].free;
+    ) -> Result<(), HydraulicError> {
+        let n = self.heads.sought.len();
+        self.heads.system.begin(n);
+        for column in 0..n {
+            let free = network.prescriptions[self.heads.sought[column]].free;
             self.system.respond(free.index(), &self.laws);
-            for (row, &j) in sought.iter().enumerate() {
+            let mut largest = 0.0_f64;
+            for row in 0..n {
+                let j = self.heads.sought[row];
                 let quantity = network.prescriptions[j].quantity;
                 let scale = tolerance(quantity, state.prescribed[j].value);
-                jacobian[(row, column)] = self.response(quantity, free) / scale;
+                let response = self.response(quantity, free) / scale;
+                self.heads.system.set(row, column, response);
+                largest = largest.max(response.abs());
             }
-            if jacobian.column(column).amax() == 0.0 {
+            if largest == 0.0 {
                 return Err(HydraulicError::NoEffect { edge: free });
             }
         }
-        jacobian
-            .lu()
-            .solve(errors)
-            .filter(|change| change.iter().all(|c| c.is_finite()))
-            .ok_or(HydraulicError::NoEffect { edge: network.prescriptions[sought[0]].free })
+        if self.heads.system.solve(&mut self.heads.change) {
+            Ok(())
+        } else {
+            let edge = network.prescriptions[self.heads.sought[0]].free;
+            Err(HydraulicError::NoEffect { edge })
+        }
     }
 
     /// Change of a quantity by 1 Pa of head of the edge that [`NodalSystem::respond`] was told.
@@ -274,8 +307,8 @@ impl HydraulicSolver {
 
     /// Places the actuators that are free; says which prescriptions turn out to be at a limit, and which
     /// leave theirs, the worst first.
-    fn changes(&mut self, network: &Network, state: &mut NetworkState) -> Vec<(usize, Hold)> {
-        let mut changes: Vec<(f64, usize, Hold)> = Vec::new();
+    fn find_changes(&mut self, network: &Network, state: &mut NetworkState) {
+        self.heads.changes.clear();
         for (k, prescription) in network.prescriptions.iter().enumerate() {
             let edge = prescription.free.index();
             let Prescribed { value, hold } = state.prescribed[k];
@@ -285,8 +318,8 @@ impl HydraulicSolver {
                 let dp = self.system.driving_pa(state, edge);
                 match place(network, state, edge, dp) {
                     Place::At(position) => state.place_actuator(edge, position),
-                    Place::Below => changes.push((f64::INFINITY, k, Hold::AtMin)),
-                    Place::Above => changes.push((f64::INFINITY, k, Hold::AtMax)),
+                    Place::Below => self.heads.changes.push((f64::INFINITY, k, Hold::AtMin)),
+                    Place::Above => self.heads.changes.push((f64::INFINITY, k, Hold::AtMax)),
                     Place::Driven => {
                         // More is wanted than comes by itself: open; less: shut; unless that was wrong.
                         self.system.respond(edge, &self.laws);
@@ -294,7 +327,7 @@ impl HydraulicSolver {
                         let open = (state.m_flow_kg_s[edge] * by_head > 0.0) != self.opened[k];
                         self.opened[k] |= open;
                         let hold = if open { Hold::AtMax } else { Hold::AtMin };
-                        changes.push((f64::INFINITY, k, hold));
+                        self.heads.changes.push((f64::INFINITY, k, hold));
                     }
                 }
                 continue;
@@ -306,11 +339,10 @@ impl HydraulicSolver {
             let wanted = error * by_head * head_by_position(network, state, edge, dp);
             let inwards = if hold == Hold::AtMin { wanted > 0.0 } else { wanted < 0.0 };
             if inwards && error.abs() > 1.0 {
-                changes.push((error.abs(), k, Hold::Held));
+                self.heads.changes.push((error.abs(), k, Hold::Held));
             }
         }
-        changes.sort_by(|a, b| b.0.total_cmp(&a.0));
-        changes.into_iter().map(|(_, k, hold)| (k, hold)).collect()
+        self.heads.changes.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     }
 
     /// A part got cut off because free edges around it were shut: opens them. False when there is none.

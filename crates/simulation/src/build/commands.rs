@@ -2,9 +2,11 @@
 
 use super::Builder;
 use crate::model::EdgeSpec;
+use crate::plan::{Plan, Target};
+use crate::simulation::Missed;
 use anergy_core::ids::SignalId;
 use anergy_core::signal::{SignalSpec, SignalTable};
-use anergy_network::elements::ElementParams;
+use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::Network;
 use std::collections::HashMap;
 
@@ -43,6 +45,16 @@ impl Builder<'_> {
             }));
         }
         commands
+    }
+
+    /// What is to be held: by pumps whose command is not left free, and by controllers.
+    pub(super) fn targets(&mut self, plan: &mut Plan) {
+        let holds = |edge: usize| matches!(&plan.network.edges[edge].element, Element::Pump(pump) if pump.holds());
+        let pumps = (0..plan.commands.len()).filter(|&i| plan.commands[i].is_some() && holds(i));
+        let pumps = pumps.map(Target::Pump);
+        let controllers = (0..plan.controllers.len()).map(Target::Controller);
+        plan.targets = pumps.chain(controllers).collect();
+        plan.initial.missed = vec![Missed::default(); plan.targets.len()];
     }
 
     /// Valves with one command begin with the same one.

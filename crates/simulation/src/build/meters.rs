@@ -1,8 +1,8 @@
-//! Heat meters of a model and their second sensors.
+//! What a model measures beside its parts: heat meters with their second sensors, worst points.
 
 use super::Builder;
 use crate::diagnostic::did_you_mean;
-use crate::plan::PlannedMeter;
+use crate::plan::{PlannedMeter, WorstPoint};
 use crate::wording::refused;
 use anergy_network::elements::ElementParams;
 use std::collections::HashMap;
@@ -34,5 +34,26 @@ impl Builder<'_> {
             meters.push(PlannedMeter { edge, other_node, in_supply: field == "return_node" });
         }
         meters
+    }
+
+    /// The pairs of nodes whose smallest pressure difference is of interest.
+    pub(super) fn worst_points(&mut self, node_ids: &HashMap<&str, usize>) -> Vec<WorstPoint> {
+        let mut points = Vec::new();
+        for spec in &self.model.worst_points {
+            let mut find = |name: &str| {
+                let found = node_ids.get(name).copied();
+                if found.is_none() {
+                    let what = format!("worst_point \"{}\"", spec.entry.id);
+                    let hint = did_you_mean(name, node_ids.keys().copied());
+                    let message = format!("{what}: between names no node: \"{name}\"");
+                    self.report(message, spec.place.of("between"), hint);
+                }
+                found
+            };
+            let pairs = spec.entry.between.iter();
+            let between = pairs.filter_map(|(a, b)| find(a).zip(find(b))).collect();
+            points.push(WorstPoint { name: spec.entry.id.clone(), between });
+        }
+        points
     }
 }

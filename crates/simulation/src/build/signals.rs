@@ -10,6 +10,7 @@ use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::{in_percent, in_words, refused};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
+use anergy_core::medium::ZERO_CELSIUS_K;
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_core::units::Unit;
 use anergy_network::elements::Element;
@@ -286,6 +287,8 @@ impl Builder<'_> {
                 name: spec.id.clone(),
                 controller,
                 measures: plan.sources[measured],
+                measured_name: spec.measures.clone(),
+                zero: if plan.channels[measured].unit == "K" { ZERO_CELSIUS_K } else { 0.0 },
                 set_point: *set_point,
                 acts_on,
                 interval,

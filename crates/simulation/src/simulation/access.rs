@@ -91,7 +91,11 @@ impl Simulation {
             && own.network.density_kg_m3.len() == other.network.density_kg_m3.len()
             && own.stations.len() == other.stations.len()
             && own.meters.len() == other.meters.len()
+            && own.network.prescribed.len() == other.network.prescribed.len()
+            && own.network.regulated.len() == other.network.regulated.len()
+            && own.pulse_shares.len() == other.pulse_shares.len()
             && own.vessels.len() == other.vessels.len()
+            && own.missed.len() == other.missed.len()
             && own.crossed.len() == other.crossed.len();
         if !fits {
             return Err(RunError::Snapshot { problem: "it is of another model".into() });

@@ -32,13 +32,19 @@ impl Simulation {
     /// Actuators follow their commands; an infinite `dt_s` settles them. The extraction valve of a
     /// station waits for its pump.
     pub(super) fn move_actuators(&mut self, dt_s: f64) {
-        let (plan, network) = (&self.plan, &mut self.state.network);
-        for (edge, command) in plan.commands.iter().enumerate() {
-            if let (Some(command), None) = (command, plan.station_of_valve[edge]) {
-                let command = self.state.signals[command.index()];
-                network.advance_actuator(&plan.network, edge, command, dt_s);
+        for (edge, command) in self.plan.commands.iter().enumerate() {
+            if let (Some(command), None) = (command, self.plan.station_of_valve[edge]) {
+                // Settled, a pulsing valve has its mean opening.
+                let pulse = self.plan.pulse_of[edge].filter(|_| dt_s.is_finite());
+                let command = match pulse {
+                    Some(pulse) => self.pulse_command(pulse),
+                    None => self.state.signals[command.index()],
+                };
+                let network = &mut self.state.network;
+                network.advance_actuator(&self.plan.network, edge, command, dt_s);
             }
         }
+        let (plan, network) = (&self.plan, &mut self.state.network);
         for (edge, command) in plan.commands.iter().enumerate() {
             if let (Some(command), Some(station)) = (command, plan.station_of_valve[edge]) {
                 let open = plan.stations[station].valve_may_open(network);
@@ -46,5 +52,6 @@ impl Simulation {
                 network.advance_actuator(&plan.network, edge, command, dt_s);
             }
         }
+        network.advance_regulators(&plan.network, dt_s);
     }
 }

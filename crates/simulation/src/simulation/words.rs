@@ -9,10 +9,10 @@ use anergy_network::graph::Quantity;
 use anergy_network::hydraulics::HydraulicError;
 use anergy_network::state::Hold;
 
-/// A prescription as the user reads it: what was wanted, what it is, where the actuator is.
+/// A prescription, or another target, as the user reads it: what was wanted, what it is, where the actuator is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Unreached {
-    /// The prescription.
+    /// The prescription, controller or pump.
     pub id: String,
     /// What is prescribed.
     pub quantity: String,
@@ -67,10 +67,14 @@ impl std::fmt::Display for Unreached {
 }
 
 pub(super) fn prescribed_event(plan: &Plan, state: &State, k: usize) -> Event {
-    let unreached = Unreached::new(plan, state, k);
     let held = state.network.prescribed[k].hold == Hold::Held;
+    reach_event(state.time, held, Unreached::new(plan, state, k))
+}
+
+/// A target is held again or no more.
+pub(super) fn reach_event(time: Time, held: bool, unreached: Unreached) -> Event {
     Event {
-        time: state.time,
+        time,
         severity: if held { Severity::Info } else { Severity::Warning },
         kind: if held { "reached" } else { "unreached" }.into(),
         message: if held {
@@ -150,6 +154,9 @@ pub(super) fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError
             problem: "no position was found for what is prescribed; other prescriptions may work against \
                       it",
         },
+        HydraulicError::Hunting { edge, miss } => {
+            RunError::Hunting { time, valve: edge_name(edge), miss }
+        }
         HydraulicError::NotFinite { edge } => {
             RunError::NotFinite { time, component: format!("edge \"{}\"", edge_name(edge)) }
         }

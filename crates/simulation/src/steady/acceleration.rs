@@ -5,19 +5,16 @@
 //! behind a closed valve. Aitken's extrapolation of each number, `x + d r/(1 - r)` with its last change `d` and
 //! the ratio `r` of its last two changes, jumps to that end.
 //!
-//! **Numerics** only slow numbers (`r` above one half) are moved, and only to temperatures of liquid water.
+//! **Numerics** only slow numbers (`r` above one half) are moved, and only to temperatures at which the water is liquid.
 //! Where a jump makes the next change larger than the last one before, the following jumps come half as
 //! often: in the limit these are the plain rounds. **Sources** `aitken1926`.
 
 use crate::simulation::Simulation;
-use anergy_core::medium::ZERO_CELSIUS_K;
 
 /// Rounds from jump to jump, at least: the changes after a jump must have found their ratio.
 const LEAST_ROUNDS: u32 = 6;
 /// Ratios of changes that are extrapolated.
 const RATIOS: std::ops::Range<f64> = 0.5..1.0;
-/// Liquid water, K.
-const LIQUID_K: std::ops::RangeInclusive<f64> = ZERO_CELSIUS_K..=ZERO_CELSIUS_K + 100.0;
 
 /// The last rounds.
 #[derive(Debug, Default)]
@@ -45,12 +42,13 @@ impl Acceleration {
             self.wait = if largest < before { LEAST_ROUNDS } else { self.wait.saturating_mul(2) };
         }
         if self.rounds >= self.wait.max(LEAST_ROUNDS) && self.before.len() == now.len() {
+            let medium = simulation.plan().network().medium;
             let mut jumped = false;
             for (i, x) in now.iter_mut().enumerate() {
                 let (first, second) = (self.last[i] - self.before[i], *x - self.last[i]);
                 let ratio = second / first;
                 let end = *x + second * ratio / (1.0 - ratio);
-                if RATIOS.contains(&ratio) && LIQUID_K.contains(&end) && end != *x {
+                if RATIOS.contains(&ratio) && medium.is_liquid(end) && end != *x {
                     *x = end;
                     jumped = true;
                 }
