@@ -317,3 +317,38 @@ fn valves_that_need_each_other_come_to_rest() {
         assert!((set_pa..set_pa + 100.0).contains(&p_pa), "{id}: {p_pa}");
     }
 }
+
+#[test]
+fn a_sustaining_valve_leaves_the_zone_before_it_its_pressure() {
+    // A main of 4 bar through a resistance of 1 bar at 2 kg/s; behind the valve the open at 0 bar. It opens from
+    // 3 to 3.2 bar before it: m = 2 sqrt(4 - p), m = phi 25/3.6 sqrt(p), y = (p - 3)/0.2. At p = 3.0315:
+    // m = 1.96826, phi = 0.162784, y = 0.161946 against 0.1575; p = 3.0323: m = 1.967436, phi = 0.162694,
+    // y = 0.161856 against 0.1615; p = 3.03237: 1.967364, 0.162686, 0.161848 and 0.16185.
+    let text = |drawn_kg_s: f64| {
+        format!(
+            "format = 1\n[[node]]\nid = \"main\"\nkind = \"pressure_boundary\"\npressure_bar = 4\n\
+             [[node]]\nid = \"zone\"\nkind = \"source\"\nm_flow_kg_s = {}\ntemperature_degc = 10\n\
+             [[node]]\nid = \"open\"\nkind = \"pressure_boundary\"\npressure_bar = 0\n\
+             [[edge]]\nid = \"pipe\"\nkind = \"resistance\"\nfrom = \"main\"\nto = \"zone\"\n\
+             dp_nominal_bar = 1\nm_flow_nominal_kg_s = 2\ndelta_m = 0.01\n\
+             [[edge]]\nid = \"valve\"\nkind = \"pressure_sustaining_valve\"\nfrom = \"zone\"\nto = \"open\"\n\
+             kvs_m3_h = 25\npressure_set_bar = 3\nband_pressure_bar = 0.2\n",
+            -drawn_kg_s
+        )
+    };
+    let steady = solve(&text(0.0));
+    let p_bar = |steady: &Steady| steady.node("zone").unwrap().p_pa / 1e5;
+    assert!((p_bar(&steady) - 3.032_37).abs() < 2e-5, "{}", p_bar(&steady));
+    // The more the zone takes, the less the valve lets out; 2 kg/s leave the zone its 3 bar, more does not.
+    for drawn_kg_s in [0.5, 1.0, 1.9, 2.5] {
+        let steady = solve(&text(drawn_kg_s));
+        let out = steady.edge("valve").unwrap().m_flow_kg_s;
+        assert_eq!((3.0..3.2).contains(&p_bar(&steady)), drawn_kg_s < 2.0, "{}", p_bar(&steady));
+        assert!(out < 1.967_36 - 0.9 * drawn_kg_s.min(2.0) && out > 0.0, "{drawn_kg_s}: {out}");
+    }
+    let mut simulation = simulation(&text(0.0));
+    set(&mut simulation, "zone.m_flow_kg_s", -1.5);
+    advance(&mut simulation, 120.0, 60.0);
+    let p_pa = get(&simulation, "zone.p_pa");
+    assert!((3e5..3.2e5).contains(&p_pa), "{p_pa}");
+}

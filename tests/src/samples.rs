@@ -15,6 +15,7 @@ use anergy_network::elements::overflow_valve::OverflowValveParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::pressure_reducing_valve::PressureReducingValveParams;
 use anergy_network::elements::pressure_source::PressureSourceParams;
+use anergy_network::elements::pressure_sustaining_valve::PressureSustainingValveParams;
 use anergy_network::elements::pump::{PumpMode, PumpParams};
 use anergy_network::elements::resistance::ResistanceParams;
 use anergy_network::elements::valve::{ValveCharacteristic, ValveCommand, ValveParams};
@@ -39,6 +40,7 @@ pub fn nature(params: &ElementParams) -> Nature {
         | ElementParams::BallValve(_)
         | ElementParams::DpController(_)
         | ElementParams::PressureReducingValve(_)
+        | ElementParams::PressureSustainingValve(_)
         | ElementParams::Resistance(_)
         | ElementParams::HeatMeter(_)
         | ElementParams::HeatExchanger(_) => Nature::Symmetric,
@@ -67,6 +69,19 @@ pub fn params(kind: &str) -> BoxedStrategy<ElementParams> {
         "pressure_reducing_valve" => {
             pressure_reducing_valve().prop_map(ElementParams::PressureReducingValve).boxed()
         }
+        "pressure_sustaining_valve" => pressure_reducing_valve()
+            .prop_map(|valve| {
+                ElementParams::PressureSustainingValve(PressureSustainingValveParams {
+                    kvs_m3_h: valve.kvs_m3_h,
+                    pressure_set_pa: valve.pressure_set_pa,
+                    sensed_node: valve.sensed_node,
+                    band_pressure_pa: valve.band_pressure_pa,
+                    lag_s: valve.lag_s,
+                    leakage: valve.leakage,
+                    delta_m: valve.delta_m,
+                })
+            })
+            .boxed(),
         "check_valve" => check_valve().prop_map(ElementParams::CheckValve).boxed(),
         "heat_meter" => heat_meter().prop_map(ElementParams::HeatMeter).boxed(),
         "resistance" => resistance().prop_map(ElementParams::Resistance).boxed(),

@@ -8,6 +8,7 @@ mod output;
 mod progress;
 mod tables;
 
+use anergy_import::epanet::EpanetOptions;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -96,6 +97,10 @@ enum ImportFormat {
         /// Only the state at t = 0, without schedules
         #[arg(long)]
         steady: bool,
+        /// Self-acting pressure valves with a narrow band instead of ideal ones: for networks in which they
+        /// work against each other
+        #[arg(long)]
+        self_acting: bool,
     },
     /// A net of pandapipes.to_json (water); lists what the model does not say
     Pandapipes {
@@ -122,8 +127,8 @@ fn main() -> ExitCode {
         }
         Command::Schema => commands::schema::schema(),
         Command::Import { format } => match format {
-            ImportFormat::Epanet { file, out, steady } => {
-                commands::import::epanet(&file, &out, steady)
+            ImportFormat::Epanet { file, out, steady, self_acting } => {
+                commands::import::epanet(&file, &out, EpanetOptions { steady, self_acting })
             }
             ImportFormat::Pandapipes { file, out, friction } => {
                 commands::import::pandapipes(&file, &out, friction)

@@ -22,11 +22,13 @@ use inp::{Row, Section};
 use network::Network;
 use units::Options;
 
-/// What an import of an EPANET file may leave out.
+/// How an EPANET file is imported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EpanetOptions {
     /// Only the state at t = 0: no schedules.
     pub steady: bool,
+    /// Pressure-reducing and -sustaining valves are self-acting, with a narrow band, instead of ideal.
+    pub self_acting: bool,
 }
 
 /// The model file of an EPANET input file.

@@ -11,6 +11,7 @@ pub mod overflow_valve;
 pub mod pipe;
 pub mod pressure_reducing_valve;
 pub mod pressure_source;
+pub mod pressure_sustaining_valve;
 pub mod pump;
 pub mod resistance;
 pub mod self_acting;
@@ -30,6 +31,7 @@ anergy_core::registry! {
         FlowLimiter("flow_limiter", flow_limiter::FlowLimiter, flow_limiter::FlowLimiterParams),
         DpController("dp_controller", self_acting::SelfActing, dp_controller::DpControllerParams),
         PressureReducingValve("pressure_reducing_valve", self_acting::SelfActing, pressure_reducing_valve::PressureReducingValveParams),
+        PressureSustainingValve("pressure_sustaining_valve", self_acting::SelfActing, pressure_sustaining_valve::PressureSustainingValveParams),
         CheckValve("check_valve", check_valve::CheckValve, check_valve::CheckValveParams),
         Resistance("resistance", resistance::Resistance, resistance::ResistanceParams),
         HeatExchanger("heat_exchanger", heat_exchanger::HeatExchanger, heat_exchanger::HeatExchangerParams),

@@ -124,10 +124,12 @@ pub struct Coupling {
 pub struct Regulation {
     /// Name of the set value, in SI.
     pub name: &'static str,
-    /// Set value while nothing drives it, Pa: it begins to close here.
+    /// Set value while nothing drives it, Pa: it begins to close (or to open) here.
     pub set_pa: f64,
-    /// Rise of the pressure over which it closes, Pa.
+    /// Rise of the pressure over which it closes (or opens), Pa.
     pub band_pa: f64,
+    /// Whether it opens as the pressure rises, and does not close.
+    pub opens: bool,
     /// Time constant, s.
     pub lag_s: f64,
 }

@@ -272,8 +272,8 @@ impl NetworkState {
     pub(crate) fn wanted_beyond(&self, regulator: &Regulator, set_pa: f64) -> f64 {
         let low_pa = regulator.low.map_or(0.0, |node| self.p_pa[node.index()]);
         let sensed_pa = self.p_pa[regulator.high.index()] - low_pa;
-        let band_pa = regulator.regulation.band_pa;
-        (set_pa + band_pa - sensed_pa) / band_pa
+        let rise = (sensed_pa - set_pa) / regulator.regulation.band_pa;
+        if regulator.regulation.opens { rise } else { 1.0 - rise }
     }
 
     /// Puts the actuator of an edge where the solver found it.

@@ -224,7 +224,8 @@ fn edge_channels(list: &mut List, plan: &Plan, i: usize, name: &str) {
         Element::Valve(_)
         | Element::BallValve(_)
         | Element::DpController(_)
-        | Element::PressureReducingValve(_) => {
+        | Element::PressureReducingValve(_)
+        | Element::PressureSustainingValve(_) => {
             list.add(group, name, "opening", "1", Source::EdgePosition(i));
         }
         Element::FlowLimiter(_) => {

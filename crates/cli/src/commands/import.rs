@@ -11,9 +11,8 @@ use std::path::Path;
 const PRINTED: usize = 20;
 
 /// Imports an EPANET input file.
-pub fn epanet(file: &Path, out: &Path, steady: bool) -> Result<(), Failure> {
-    let result = epanet::import(&read(file)?, EpanetOptions { steady });
-    write(file, out, result)
+pub fn epanet(file: &Path, out: &Path, wanted: EpanetOptions) -> Result<(), Failure> {
+    write(file, out, epanet::import(&read(file)?, wanted))
 }
 
 /// Friction laws of pandapipes.

@@ -99,7 +99,10 @@ fn a_small_network() {
 
 #[test]
 fn at_the_start_only() {
-    let net = import(SMALL.as_bytes(), EpanetOptions { steady: true }).unwrap();
+    let net = {
+        let wanted = EpanetOptions { steady: true, ..EpanetOptions::default() };
+        import(SMALL.as_bytes(), wanted).unwrap()
+    };
     assert_eq!(net.schedules, 0);
     says(&net, NoteKind::NotTranslated, None, "patterns after t = 0");
 }
@@ -174,6 +177,25 @@ fn valves() {
     assert!(!with_valve("PRV 20", "[STATUS]\nV CLOSED\n").model.contains("id = \"V\""));
     let other = with_valve("PRV 20", "[STATUS]\nV 10\n");
     has(&other, "V.control", &["value = 98100.0"]);
+}
+
+#[test]
+fn self_acting_valves() {
+    let of = |line: &str| {
+        let text = format!(
+            "[JUNCTIONS]\nA 0\nB 10 1\n[RESERVOIRS]\nR 50\n[PIPES]\nP R A 10 100 100\nQ R B 1000 50 100\n\
+             [VALVES]\nV A B 100 {line}\n[OPTIONS]\nUnits LPS\n"
+        );
+        let wanted = EpanetOptions { self_acting: true, ..EpanetOptions::default() };
+        import(text.as_bytes(), wanted).unwrap()
+    };
+    // 20 m are 196.2 kPa, the middle of a band of 100 Pa.
+    let net = of("PRV 20");
+    let lines = ["kind = \"pressure_reducing_valve\"", "pressure_set_pa = 196150.0"];
+    has(&net, "V", &lines);
+    has(&net, "V", &["to = \"V.check\"", "sensed_node = \"B\"", "band_pressure_pa = 100.0"]);
+    assert!(!net.model.contains("[[prescribed]]"));
+    has(&of("PSV 20"), "V", &["kind = \"pressure_sustaining_valve\"", "sensed_node = \"A\""]);
 }
 
 #[test]

@@ -33,6 +33,7 @@ pub(super) struct Writer<'a> {
     pub network: &'a Network,
     pub options: &'a Options,
     pub text: &'a mut ModelText,
+    pub wanted: EpanetOptions,
 }
 
 /// Writes the model.
@@ -51,7 +52,7 @@ pub(super) fn translate(
     reach.note_closed(network, text);
     reach.note_cut_off(network, options, text);
     head(options, wanted, title, text);
-    let mut writer = Writer { network, options, text };
+    let mut writer = Writer { network, options, text, wanted };
     for (i, _) in network.nodes.iter().enumerate().filter(|(i, _)| reach.nodes[*i]) {
         writer.node(i);
     }

@@ -5,6 +5,9 @@ use super::pumps::straight_pieces;
 use super::translate::{LEAST_MINOR_LOSS, VELOCITY_M_S, Writer, kv_m3_h, m_flow_at_velocity};
 use crate::NoteKind;
 
+/// Band of a self-acting valve, around the pressure it holds, and its leakage.
+const BAND_PA: f64 = 100.0;
+const LEAKAGE: f64 = 1e-6;
 /// EPANET opens a position control valve at least so far.
 const LEAST_COEFFICIENT: f64 = 1e-3;
 /// Share of the flow at 1 m/s below which the loss of a valve is regularised.
@@ -15,7 +18,10 @@ impl Writer<'_> {
         let network = self.network;
         let link = &network.links[i];
         let LinkKind::Valve { kind, diameter_m, minor_loss, .. } = link.kind else { return };
-        let ends = self.guarded(i, false);
+        let holds_pressure =
+            matches!(kind, ValveKind::Prv | ValveKind::Psv) && link.status == Status::Active;
+        // EPANET's let no water back; an ideal one that would have to is shut anyway.
+        let ends = self.guarded(i, holds_pressure && self.wanted.self_acting);
         if link.status == Status::Open {
             self.throttle(link, &ends, minor_loss);
             return;
@@ -141,6 +147,23 @@ impl Writer<'_> {
         }
         let kvs_m3_h = self.kvs_m3_h(diameter_m, minor_loss);
         let pressure_pa = link.setting * self.options.pressure_m() * self.options.pa_m();
+        if self.wanted.self_acting {
+            let kind = match kind {
+                ValveKind::Prv => "pressure_reducing_valve",
+                _ => "pressure_sustaining_valve",
+            };
+            self.text
+                .edge(&link.id, kind, &ends[0], &ends[1])
+                .number("kvs_m3_h", kvs_m3_h)
+                .number("pressure_set_pa", pressure_pa - 0.5 * BAND_PA)
+                .number("band_pressure_pa", BAND_PA)
+                .text("sensed_node", &node.id)
+                .number("leakage", LEAKAGE)
+                .number("delta_m", DELTA_M);
+            let what = format!("it is self-acting and holds its pressure within {BAND_PA} Pa");
+            link.note(self.text, NoteKind::Changed, &what);
+            return;
+        }
         self.text
             .edge(&link.id, "valve", &ends[0], &ends[1])
             .number("kvs_m3_h", kvs_m3_h)

@@ -45,6 +45,7 @@ impl DpControllerParams {
             delta_m: self.delta_m,
             set: ("dp_set_pa", self.dp_set_pa),
             band: ("band_dp_pa", self.band_dp_pa),
+            opens: false,
             lag_s: self.lag_s,
         };
         fields.build(medium)

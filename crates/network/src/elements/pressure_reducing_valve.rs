@@ -44,6 +44,7 @@ impl PressureReducingValveParams {
             delta_m: self.delta_m,
             set: ("pressure_set_pa", self.pressure_set_pa),
             band: ("band_pressure_pa", self.band_pressure_pa),
+            opens: false,
             lag_s: self.lag_s,
         };
         fields.build(medium)

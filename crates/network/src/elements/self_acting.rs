@@ -3,7 +3,8 @@
 //! **Equation** the valve closes as the pressure p it senses rises, over a proportional band:
 //! `y_end = clamp((p_set + X_p - p)/X_p, 0, 1)`, and follows with a lag, `T dy/dt = y_end - y`; the flow is
 //! that of a linear valve, `m = k_vs phi(y) sqrt(dp)`, `phi = l + (1 - l) y`. So p lies between `p_set` (open)
-//! and `p_set + X_p` (shut) wherever the valve can hold it. Over a step, exact for a constant `y_end`:
+//! and `p_set + X_p` (shut) wherever the valve can hold it. A valve that opens instead has
+//! `y_end = clamp((p - p_set)/X_p, 0, 1)`. Over a step, exact for a constant `y_end`:
 //! `y = y_0 + (1 - exp(-dt/T)) (y_end - y_0)`, with `y_end` of the pressures at the *end* of the step, found
 //! by Newton together with the hydraulics (`hydraulics/regulated.rs`); in the steady state `y = y_end`.
 //!
@@ -35,6 +36,7 @@ pub(super) struct Fields {
     pub delta_m: f64,
     pub set: (&'static str, f64),
     pub band: (&'static str, Option<f64>),
+    pub opens: bool,
     pub lag_s: f64,
 }
 
@@ -62,6 +64,7 @@ impl Fields {
                 name: self.set.0,
                 set_pa,
                 band_pa: positive(self.band.0, self.band.1.unwrap_or(BAND * set_pa))?,
+                opens: self.opens,
                 lag_s: not_negative("lag_s", self.lag_s)?,
             },
         })

@@ -2,7 +2,7 @@
 //!
 //! **Equation** for each valve `r = y - y_0 - s (y_end(p(y)) - y_0) = 0`, with the share `s` of the way that
 //! it goes in the step (1 in the steady state). Where `y_end` is neither open nor shut that is the line
-//! `G = p(y) - p_set - X_p (1 - y_0 - (y - y_0)/s) = 0`, which stays informative where `y_end` is flat: Newton
+//! `G = p(y) - p_set - X_p (1 - y_0 - (y - y_0)/s) = 0` (for a valve that closes), which stays informative where `y_end` is flat: Newton
 //! on G within the ends of the way, `y_0 (1 - s)` and `y_0 + s (1 - y_0)`; a valve at an end that G would push
 //! beyond it stays there. Sensitivities from the factorised matrix: `dp/dy_k = dp/dh_k (-d loss_k/dy_k)`, h a
 //! head in the valve.
@@ -188,6 +188,7 @@ impl HydraulicSolver {
                 let at = |node: NodeId| self.system.response_pa(node.index());
                 let by_head = at(sensing.high) - sensing.low.map_or(0.0, at);
                 let by_opening = by_head * head_by_opening / sensing.regulation.band_pa;
+                let by_opening = if sensing.regulation.opens { -by_opening } else { by_opening };
                 let own = if row == column { 1.0 / state.regulated[row].share } else { 0.0 };
                 self.openings.system.set(row, column, own + by_opening);
                 if row == column {

@@ -43,6 +43,10 @@ impl Builder<'_> {
                     let sensed = params.sensed_node.as_deref();
                     (sensed.map_or(Some(edge.to), |name| find("sensed_node", name)), None)
                 }
+                ElementParams::PressureSustainingValve(params) => {
+                    let sensed = params.sensed_node.as_deref();
+                    (sensed.map_or(Some(edge.from), |name| find("sensed_node", name)), None)
+                }
                 _ => continue,
             };
             if let Some(high) = high {
