@@ -43,8 +43,10 @@ impl DpControllerParams {
             kvs_m3_h: self.kvs_m3_h,
             leakage: self.leakage,
             delta_m: self.delta_m,
-            set: ("dp_set_pa", self.dp_set_pa),
-            band: ("band_dp_pa", self.band_dp_pa),
+            set_field: "dp_set_pa",
+            set_pa: self.dp_set_pa,
+            band_field: "band_dp_pa",
+            band_pa: self.band_dp_pa,
             opens: false,
             lag_s: self.lag_s,
         };

@@ -42,8 +42,10 @@ impl PressureSustainingValveParams {
             kvs_m3_h: self.kvs_m3_h,
             leakage: self.leakage,
             delta_m: self.delta_m,
-            set: ("pressure_set_pa", self.pressure_set_pa),
-            band: ("band_pressure_pa", self.band_pressure_pa),
+            set_field: "pressure_set_pa",
+            set_pa: self.pressure_set_pa,
+            band_field: "band_pressure_pa",
+            band_pa: self.band_pressure_pa,
             opens: true,
             lag_s: self.lag_s,
         };

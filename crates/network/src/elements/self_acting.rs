@@ -34,8 +34,10 @@ pub(super) struct Fields {
     pub kvs_m3_h: f64,
     pub leakage: f64,
     pub delta_m: f64,
-    pub set: (&'static str, f64),
-    pub band: (&'static str, Option<f64>),
+    pub set_field: &'static str,
+    pub set_pa: f64,
+    pub band_field: &'static str,
+    pub band_pa: Option<f64>,
     pub opens: bool,
     pub lag_s: f64,
 }
@@ -50,7 +52,7 @@ impl Fields {
                 requirement,
             });
         }
-        let set_pa = positive(self.set.0, self.set.1)?;
+        let set_pa = positive(self.set_field, self.set_pa)?;
         let valve = ValveParams {
             kvs_m3_h: self.kvs_m3_h,
             characteristic: ValveCharacteristic::Linear,
@@ -61,9 +63,9 @@ impl Fields {
         Ok(SelfActing {
             valve: valve.build(medium)?,
             regulation: Regulation {
-                name: self.set.0,
+                name: self.set_field,
                 set_pa,
-                band_pa: positive(self.band.0, self.band.1.unwrap_or(BAND * set_pa))?,
+                band_pa: positive(self.band_field, self.band_pa.unwrap_or(BAND * set_pa))?,
                 opens: self.opens,
                 lag_s: not_negative("lag_s", self.lag_s)?,
             },
