@@ -113,6 +113,12 @@ pub fn run_error(py: Python<'_>, error: &SimulationError, text: &str, origin: &O
         E::Singular { time, .. } => with(py, python::ConvergenceError::new_err(message), |value| {
             value.setattr("time", time)
         }),
+        E::Hunting { time, valve, .. } => {
+            with(py, python::ConvergenceError::new_err(message), |value| {
+                value.setattr("time", time)?;
+                value.setattr("component", valve)
+            })
+        }
         E::Unbalanced { time, node, .. } => failed(time, Some(node)),
         E::NotFinite { time, component } | E::Temperature { time, component, .. } => {
             failed(time, Some(component))
