@@ -29,12 +29,6 @@ fn one() -> f64 {
     1.0
 }
 
-impl Default for Friction {
-    fn default() -> Self {
-        Self { factor: 1.0, added_roughness_m: 0.0 }
-    }
-}
-
 impl Friction {
     /// Checks the ranges.
     ///

@@ -20,12 +20,6 @@ pub struct Insulation {
     pub factor: f64,
 }
 
-impl Default for Insulation {
-    fn default() -> Self {
-        Self { factor: 1.0 }
-    }
-}
-
 impl Insulation {
     /// Checks the range.
     ///

@@ -20,12 +20,6 @@ pub struct Length {
     pub factor: f64,
 }
 
-impl Default for Length {
-    fn default() -> Self {
-        Self { factor: 1.0 }
-    }
-}
-
 impl Length {
     /// Checks the range.
     ///

@@ -20,7 +20,7 @@ use serde_json::json;
 const LARGEST_DIFFERENCE_K: f64 = 40.0;
 
 /// The effect as written.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Surroundings {
     /// Added to the temperature around the pipe, K; 0 changes nothing.
