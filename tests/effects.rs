@@ -53,7 +53,9 @@ fn dp_pa(model: &Model) -> f64 {
 /// The neutral values of every effect.
 fn neutral(id: &str) -> Value {
     match id {
-        "P2" | "P10" => json!({ "factor": 1.0 }),
+        "P1" => json!({ "wall_capacity_j_m_k": 0.0, "film_factor": 1.0 }),
+        "P7" => json!({ "dispersion_m2_s": 0.0 }),
+        "P2" | "P5" | "P10" => json!({ "factor": 1.0 }),
         "P3" => json!({ "difference_k": 0.0, "lag_s": 0.0 }),
         "P8" => json!({ "factor": 1.0, "added_roughness_m": 0.0 }),
         other => panic!("effect {other} has no neutral value here"),

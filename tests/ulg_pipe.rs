@@ -95,6 +95,7 @@ fn errors(record: &Record, params: &PipeParams, medium: Medium, ambient_degc: f6
         prescriptions: vec![],
         couplings: vec![],
         soil: vec![],
+        regulators: vec![],
     };
     let mut transport = Transport::new(&network).unwrap();
     let mut state = NetworkState::new(&network, record.initial_degc.1 + ZERO_K);

@@ -47,7 +47,8 @@ impl ModelChange for Wall {
         if self.wall_capacity_j_m_k == 0.0 {
             return Ok(Vec::new());
         }
-        let set = |field: &str, value| Change::Set { parameter: format!("{component}.{field}"), value };
+        let set =
+            |field: &str, value| Change::Set { parameter: format!("{component}.{field}"), value };
         Ok(vec![
             set("wall", json!("film")),
             set("wall_capacity_j_m_k", json!(self.wall_capacity_j_m_k)),
