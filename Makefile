@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python validate peers bench bench-peers instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python validate peers bench bench-thermal bench-peers instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -60,6 +60,12 @@ peers: .venv-peers/.installed ## Imported networks against EPANET and pandapipes
 
 bench: ## Criterion benches
 	cargo bench -p anergy-benches
+
+bench-thermal: ## Times of whole runs with heat: DESTEST 256 days, 1 000 consumers one year, steps of 100 to 10 000
+	cargo build --release -p anergy-benches --bin thermal
+	target/release/thermal destest $${ANERGY_REFERENCE_DATA:-../shared/data}/destest/definition
+	target/release/thermal year 1000
+	target/release/thermal steps 100 300 1000 3000 10000
 
 bench-peers: .venv-peers/.installed ## Hydraulics beside EPANET and pandapipes
 	cargo build --release -p anergy -p anergy-benches --bins

@@ -43,6 +43,11 @@ const STRAIGHT: f64 = 0.3;
 /// Pressure that a consumer's valve takes at least, and its heat exchanger and stubs together, Pa.
 const VALVE_PA: f64 = 30_000.0;
 const STATION_PA: f64 = 20_000.0;
+/// Design flows of consumers are between these, kg/s.
+const LEAST_KG_S: f64 = 0.06;
+const MOST_KG_S: f64 = 0.2;
+/// Load profiles of a year, for as many sizes of houses.
+const PROFILES: usize = 8;
 /// Edges of a consumer's station with its trench, and of the plant.
 const EDGES_PER_CONSUMER: f64 = 6.0 + 2.0 * LOOPS;
 const EDGES_OF_PLANT: usize = 5;
@@ -73,6 +78,60 @@ pub fn two_pipe_network(consumers: usize, seed: u64) -> String {
     text(&sites, &order, &loops, &mut random)
 }
 
+/// The same network for a year: imposed flows of houses with heat loads from the profiles in the file
+/// `profiles` (written by [`write_profiles`]), linear between its hours; the plant has 80 degC.
+pub fn two_pipe_network_of_a_year(consumers: usize, seed: u64, profiles: &str) -> String {
+    let mut random = Random(seed);
+    let (sites, order) = grown_tree(consumers.max(1), &mut random);
+    let loops = loops(&sites, (LOOPS * consumers as f64).round() as usize, &mut random);
+    let mut out = pipes(&sites, &order, &loops)
+        .replace("until = \"1h\"", "until = \"365d\"")
+        .replace("step = \"1s\"", "step = \"15min\"")
+        .replace("record = \"10s\"", "record = \"1h\"")
+        .replace("initial_degc = 50", "initial_degc = 60");
+    let _ = writeln!(
+        out,
+        "[[edge]]\nid = \"source\"\nkind = \"resistance\"\nfrom = \"plant.cold\"\nto = \"plant.hot\"\n\
+         dp_nominal_pa = 10000\nm_flow_nominal_kg_s = {:.3}\n[[unit]]\nid = \"source.unit\"\n\
+         port = \"source\"\nkind = \"heat_source\"\nsupply_degc = 80",
+        sites[0].total_kg_s
+    );
+    for (i, site) in sites.iter().enumerate().skip(1) {
+        let size = (site.own_kg_s - LEAST_KG_S) / (MOST_KG_S - LEAST_KG_S) * PROFILES as f64;
+        let _ = writeln!(
+            out,
+            "[[station]]\nsite = \"c{i}\"\nkind = \"prescribed_flow\"\n[[unit]]\nsite = \"c{i}\"\n\
+             kind = \"heat_load\"\ntemperature_difference_k = 30\nv_flow_min_l_min = 0.05\n\
+             [[series]]\nfile = \"{profiles}\"\ncolumn = \"load_{}_kw\"\nunit = \"kW\"\n\
+             signal = \"c{i}.unit.load_w\"\ninterpolation = \"linear\"",
+            (size as usize).min(PROFILES - 1)
+        );
+    }
+    out
+}
+
+/// Hourly loads of a year of houses of different sizes, as the text of a CSV file: heating that follows
+/// the season and the hour, and hot water at random hours.
+pub fn write_profiles(seed: u64) -> String {
+    let mut random = Random(seed);
+    let names: Vec<String> = (0..PROFILES).map(|i| format!("load_{i}_kw")).collect();
+    let mut out = format!("time_s,{}\n", names.join(","));
+    for hour in 0..=8760_u32 {
+        let turn =
+            |period_h: f64, at_h: f64| (2.0 * PI * (f64::from(hour) - at_h) / period_h).cos();
+        let heating = (0.5 + 0.45 * turn(8760.0, 500.0)) * (0.8 + 0.2 * turn(24.0, 7.0));
+        let _ = write!(out, "{}", hour * 3600);
+        for i in 0..PROFILES {
+            let share = (i as f64 + 0.5) / PROFILES as f64;
+            let design_kw = (LEAST_KG_S + share * (MOST_KG_S - LEAST_KG_S)) * 4.18 * 30.0;
+            let hot_water = if random.below(8) == 0 { random.between(0.1, 0.4) } else { 0.0 };
+            let _ = write!(out, ",{:.3}", design_kw * (0.7 * heating + hot_water).max(0.0));
+        }
+        out.push('\n');
+    }
+    out
+}
+
 /// The model file of a two-pipe network with about `edges` edges.
 pub fn two_pipe_network_with_edges(edges: usize, seed: u64) -> String {
     let consumers = edges.saturating_sub(EDGES_OF_PLANT) as f64 / EDGES_PER_CONSUMER;
@@ -96,7 +155,7 @@ fn grown_tree(consumers: usize, random: &mut Random) -> (Vec<Site>, Vec<usize>) 
     let mut sites = vec![site(0.5 * side_m, 0.5 * side_m, 0.0)];
     for _ in 0..consumers {
         let (x_m, y_m) = (random.between(0.0, side_m), random.between(0.0, side_m));
-        sites.push(site(x_m, y_m, random.between(0.06, 0.2)));
+        sites.push(site(x_m, y_m, random.between(LEAST_KG_S, MOST_KG_S)));
     }
     let mut order = vec![0];
     let mut waiting: Vec<usize> = (1..sites.len()).collect();
@@ -156,6 +215,19 @@ fn loops(sites: &[Site], count: usize, random: &mut Random) -> Vec<(usize, usize
 }
 
 fn text(sites: &[Site], order: &[usize], loops: &[(usize, usize)], random: &mut Random) -> String {
+    let mut out = pipes(sites, order, loops);
+    let farthest_pa = sites.iter().map(|site| site.loss_pa).fold(0.0, f64::max);
+    let head_pa = 2.0 * farthest_pa + STATION_PA + VALVE_PA;
+    plant(&mut out, sites[0].total_kg_s, head_pa);
+    for (i, site) in sites.iter().enumerate().skip(1) {
+        let valve_pa = head_pa - 2.0 * site.loss_pa - STATION_PA;
+        consumer(&mut out, &format!("c{i}"), site.own_kg_s, valve_pa, random);
+    }
+    out
+}
+
+/// The file without stations: how to run it, sites and trenches.
+fn pipes(sites: &[Site], order: &[usize], loops: &[(usize, usize)]) -> String {
     let name = |i: usize| if i == 0 { "plant".to_owned() } else { format!("c{i}") };
     let mut out = String::from(
         "format = 1\n[model]\nname = \"generated two-pipe network\"\n[run]\nuntil = \"1h\"\nstep = \"1s\"\n\
@@ -194,13 +266,6 @@ fn text(sites: &[Site], order: &[usize], loops: &[(usize, usize)], random: &mut 
     for &(a, b) in loops {
         let flow_kg_s = sites[a].total_kg_s.min(sites[b].total_kg_s);
         trench(a, b, distance_m(&sites[a], &sites[b]), pipe(flow_kg_s).0);
-    }
-    let farthest_pa = sites.iter().map(|site| site.loss_pa).fold(0.0, f64::max);
-    let head_pa = 2.0 * farthest_pa + STATION_PA + VALVE_PA;
-    plant(&mut out, sites[0].total_kg_s, head_pa);
-    for (i, site) in sites.iter().enumerate().skip(1) {
-        let valve_pa = head_pa - 2.0 * site.loss_pa - STATION_PA;
-        consumer(&mut out, &name(i), site.own_kg_s, valve_pa, random);
     }
     out
 }

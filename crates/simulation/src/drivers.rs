@@ -3,6 +3,7 @@
 use crate::model_file::Interpolation;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
+use std::sync::Arc;
 
 /// A signal with its points in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,19 +13,20 @@ pub struct Driver {
     /// Between the points.
     pub interpolation: Interpolation,
     /// Times of the points, rising.
-    pub times: Vec<Time>,
+    pub times: Arc<[Time]>,
     /// Values of the points, SI.
-    pub values: Vec<f64>,
+    pub values: Arc<[f64]>,
 }
 
 impl Driver {
     /// Value during a step that ends at `end`: the value held on the way there, or the interpolated
-    /// value at the end. Before the first point and after the last one their values hold.
-    pub fn value_until(&self, end: Time) -> f64 {
+    /// value at the end. Before the first point and after the last one their values hold. `near` is
+    /// where the points may be, as [`Self::next_breakpoint`] left it.
+    pub fn value_until(&self, end: Time, near: usize) -> f64 {
         // A held value changes at its point: a step that ends there still has the old one.
         let next = match self.interpolation {
-            Interpolation::Hold => self.times.partition_point(|time| *time < end),
-            Interpolation::Linear => self.times.partition_point(|time| *time <= end),
+            Interpolation::Hold => self.passed(near, |time| time < end),
+            Interpolation::Linear => self.passed(near, |time| time <= end),
         };
         self.between(next, end)
     }
@@ -49,10 +51,25 @@ impl Driver {
         }
     }
 
-    /// The first point after `now`.
-    pub fn next_breakpoint(&self, now: Time) -> Time {
-        let next = self.times.partition_point(|time| *time <= now);
-        self.times.get(next).copied().unwrap_or(Time::NEVER)
+    /// The first point after `now`; `near` is where it was before, and is moved there.
+    pub fn next_breakpoint(&self, now: Time, near: &mut usize) -> Time {
+        *near = self.passed(*near, |time| time <= now);
+        self.times.get(*near).copied().unwrap_or(Time::NEVER)
+    }
+
+    /// Number of points that have passed: looked for from `near` on, anywhere if it is not there.
+    fn passed(&self, near: usize, passed: impl Fn(Time) -> bool) -> usize {
+        let is = |i: usize| self.times.get(i).is_some_and(|time| passed(*time));
+        if near > self.times.len() || (near > 0 && !is(near - 1)) {
+            return self.times.partition_point(|time| passed(*time));
+        }
+        if !is(near) {
+            near
+        } else if !is(near + 1) {
+            near + 1
+        } else {
+            self.times.partition_point(|time| passed(*time))
+        }
     }
 }
 
@@ -64,30 +81,44 @@ mod tests {
         Driver {
             signal: SignalId(0),
             interpolation,
-            times: vec![Time(10), Time(20), Time(40)],
-            values: vec![1.0, 2.0, 4.0],
+            times: [Time(10), Time(20), Time(40)].into(),
+            values: [1.0, 2.0, 4.0].into(),
         }
     }
 
     #[test]
     fn held_values_change_at_their_points() {
         let hold = driver(Interpolation::Hold);
-        assert_eq!(hold.value_until(Time(20)), 1.0);
-        assert_eq!(hold.value_until(Time(21)), 2.0);
+        assert_eq!(hold.value_until(Time(20), 0), 1.0);
+        assert_eq!(hold.value_until(Time(21), 0), 2.0);
         assert_eq!(hold.value_at(Time(20)), 2.0);
         assert_eq!(hold.value_at(Time(0)), 1.0);
-        assert_eq!(hold.value_until(Time(99)), 4.0);
-        assert_eq!(hold.next_breakpoint(Time(10)), Time(20));
-        assert_eq!(hold.next_breakpoint(Time(40)), Time::NEVER);
+        assert_eq!(hold.value_until(Time(99), 0), 4.0);
+        assert_eq!(hold.next_breakpoint(Time(10), &mut 0), Time(20));
+        assert_eq!(hold.next_breakpoint(Time(40), &mut 0), Time::NEVER);
     }
 
     #[test]
     fn linear_values_are_those_at_the_end_of_the_step() {
         let linear = driver(Interpolation::Linear);
-        assert_eq!(linear.value_until(Time(15)), 1.5);
-        assert_eq!(linear.value_until(Time(20)), 2.0);
-        assert_eq!(linear.value_until(Time(30)), 3.0);
-        assert_eq!(linear.value_until(Time(5)), 1.0);
-        assert_eq!(linear.value_until(Time(50)), 4.0);
+        assert_eq!(linear.value_until(Time(15), 0), 1.5);
+        assert_eq!(linear.value_until(Time(20), 0), 2.0);
+        assert_eq!(linear.value_until(Time(30), 0), 3.0);
+        assert_eq!(linear.value_until(Time(5), 0), 1.0);
+        assert_eq!(linear.value_until(Time(50), 0), 4.0);
+    }
+
+    #[test]
+    fn wherever_it_looks_first() {
+        let linear = driver(Interpolation::Linear);
+        for (time, next, value) in [(5, 10, 1.0), (15, 20, 1.5), (20, 40, 2.0), (50, -1, 4.0)] {
+            let next = if next < 0 { Time::NEVER } else { Time(next) };
+            for start in 0..=9 {
+                let mut near = start;
+                assert_eq!(linear.next_breakpoint(Time(time), &mut near), next);
+                assert_eq!(linear.value_until(Time(time), start), value);
+                assert_eq!(linear.value_until(Time(time), near), value);
+            }
+        }
     }
 }

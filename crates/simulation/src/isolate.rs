@@ -159,8 +159,8 @@ impl Model {
                     signal: format!("{}.{quantity}", cut.node),
                     unit: None,
                     interpolation: Interpolation::Linear,
-                    times_s: cut.times_s.clone(),
-                    values: values.clone(),
+                    times_s: cut.times_s.as_slice().into(),
+                    values: values.as_slice().into(),
                     source: format!("isolate at \"{}\"", cut.node),
                     place: Place::default(),
                 });

@@ -17,6 +17,7 @@ use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A field as it was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -186,9 +187,9 @@ pub struct DriverSpec {
     /// Between the points.
     pub interpolation: Interpolation,
     /// Times, s since the start.
-    pub times_s: Vec<f64>,
+    pub times_s: Arc<[f64]>,
     /// Values in `unit`.
-    pub values: Vec<f64>,
+    pub values: Arc<[f64]>,
     /// Where it comes from, for messages.
     pub source: String,
     /// Where it stands.

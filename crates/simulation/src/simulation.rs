@@ -43,6 +43,8 @@ pub struct Simulation {
     wanted: Vec<anergy_core::port::PortRequest>,
     /// What the prescriptions were before the last solve.
     holds: Vec<Hold>,
+    /// Where each driver was found last; results do not depend on it.
+    near: Vec<usize>,
 }
 
 impl Simulation {
@@ -62,6 +64,7 @@ impl Simulation {
             events: Vec::with_capacity(64),
             wanted: plan.initial.network.requests.clone(),
             holds: vec![Hold::Held; plan.prescriptions.len()],
+            near: vec![0; plan.drivers.len()],
             plan,
         };
         simulation.reset()?;
@@ -136,8 +139,8 @@ impl Simulation {
             if let Some(longest) = self.plan.soil_step {
                 end = end.min(now + longest);
             }
-            for driver in &self.plan.drivers {
-                end = end.min(driver.next_breakpoint(now));
+            for (driver, near) in self.plan.drivers.iter().zip(&mut self.near) {
+                end = end.min(driver.next_breakpoint(now, near));
             }
             for (controller, next) in self.plan.controllers.iter().zip(&self.state.next_tick) {
                 if controller.interval > Time::ZERO {
@@ -188,9 +191,9 @@ impl Simulation {
     /// Schedules and series write their signals.
     fn drive_inputs(&mut self, end: Time) {
         self.follow_seasons(end);
-        for driver in &self.plan.drivers {
+        for (driver, near) in self.plan.drivers.iter().zip(&self.near) {
             if !self.state.taken_over[driver.signal.index()] {
-                self.state.signals[driver.signal.index()] = driver.value_until(end);
+                self.state.signals[driver.signal.index()] = driver.value_until(end, *near);
             }
         }
     }

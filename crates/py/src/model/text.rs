@@ -63,7 +63,7 @@ impl Model {
         // Drivers are those of the schedules, then those of the series.
         let first = self.model.drivers.len().saturating_sub(series.len());
         let points = self.model.drivers[first..].iter().map(|driver| {
-            let points: Vec<_> = driver.times_s.iter().zip(&driver.values).collect();
+            let points: Vec<_> = driver.times_s.iter().zip(driver.values.iter()).collect();
             let mut entry = json!({
                 "signal": driver.signal, "interpolation": driver.interpolation, "points": points
             });

@@ -17,6 +17,7 @@ use anergy_network::elements::Element;
 use anergy_network::graph::Network;
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Who writes a signal.
 pub(super) struct Writer {
@@ -125,6 +126,8 @@ impl Builder<'_> {
         writers: &mut HashMap<SignalId, Writer>,
     ) -> Vec<Driver> {
         let mut drivers = Vec::new();
+        // Columns of one file share their times.
+        let mut known_times: HashMap<*const f64, Arc<[Time]>> = HashMap::new();
         for spec in &self.model.drivers {
             let Some(signal) = signals.find(&spec.signal) else {
                 let names = signals.specs().iter().map(|signal| signal.name.as_str());
@@ -141,11 +144,10 @@ impl Builder<'_> {
             else {
                 continue;
             };
-            let values: Vec<f64> = spec
-                .values
-                .iter()
-                .map(|value| unit.map_or(*value, |unit| unit.to_si(*value)))
-                .collect();
+            let values: Arc<[f64]> = match unit {
+                Some(unit) => spec.values.iter().map(|value| unit.to_si(*value)).collect(),
+                None => spec.values.clone(),
+            };
             if let Some(i) = values.iter().position(|v| !(known.min..=known.max).contains(v)) {
                 let message = format!(
                     "{}: value {} at {} s is outside the range of the signal: {}",
@@ -162,7 +164,13 @@ impl Builder<'_> {
                 self.report(message, span, hint.filter(|_| unit.is_none()));
                 continue;
             }
-            let times: Option<Vec<Time>> = spec.times_s.iter().map(|s| Time::from_s(*s)).collect();
+            let key = spec.times_s.as_ptr();
+            let times = known_times.get(&key).cloned().or_else(|| {
+                let times: Option<Arc<[Time]>> =
+                    spec.times_s.iter().map(|s| Time::from_s(*s)).collect();
+                known_times.extend(times.iter().map(|times| (key, times.clone())));
+                times
+            });
             let Some(times) = times else {
                 let message = format!("{}: a time is beyond what can be simulated", spec.source);
                 self.report(message, spec.place.span.clone(), None);

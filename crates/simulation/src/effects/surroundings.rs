@@ -66,7 +66,7 @@ impl Surroundings {
             ),
         })?;
         own.clone_into(&mut driver.signal);
-        driver.times_s.iter_mut().for_each(|time_s| *time_s += self.lag_s);
+        driver.times_s = driver.times_s.iter().map(|time_s| time_s + self.lag_s).collect();
         Ok(driver)
     }
 }

@@ -290,26 +290,31 @@ impl ModelReader<'_> {
                 signal: entry.signal,
                 unit: entry.unit,
                 interpolation: entry.interpolation,
-                times_s,
-                values,
+                times_s: times_s.into(),
+                values: values.into(),
                 place: place(&what, &tree, &table),
                 source: what,
             });
         }
+        let mut entries = Vec::new();
         for tree in self.items("series") {
             let what = format!("series of \"{}\"", tree.text("signal").unwrap_or("?"));
-            let read = self.reader.read::<SeriesEntry>(&what, &tree);
-            let Some((entry, table)) = read else { continue };
-            match series::load(&entry, start, self.dir, &tree) {
+            if let Some((entry, table)) = self.reader.read::<SeriesEntry>(&what, &tree) {
+                entries.push((what, entry, table, tree));
+            }
+        }
+        let mut files = series::Files::new(self.dir, start, entries.iter().map(|entry| &entry.1));
+        for (what, entry, table, tree) in &entries {
+            match files.load(entry, tree) {
                 Err(problem) => self.reader.report(problem),
                 Ok((times_s, values)) => drivers.push(DriverSpec {
-                    signal: entry.signal,
-                    unit: entry.unit,
+                    signal: entry.signal.clone(),
+                    unit: entry.unit.clone(),
                     interpolation: entry.interpolation,
                     times_s,
                     values,
                     source: format!("{what} ({}, column {})", entry.file, entry.column),
-                    place: place(&what, &tree, &table),
+                    place: place(what, tree, table),
                 }),
             }
         }

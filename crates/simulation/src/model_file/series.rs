@@ -1,97 +1,249 @@
 //! Columns of CSV files as signals over time: `value = file * scale + offset` in the unit of the entry.
+//!
+//! Each file is read once, however many signals its columns drive, and their times are shared.
 
 use super::SeriesEntry;
 use super::tables::separator_byte;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::Tree;
 use jiff::Timestamp;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Times in s and values of a column.
-pub(super) type Column = (Vec<f64>, Vec<f64>);
+pub(super) type Column = (Arc<[f64]>, Arc<[f64]>);
 
-/// Reads the column that an entry names.
-///
-/// # Errors
-/// A missing or unreadable file, an unknown column, a line that is not a number, times that do not
-/// rise: each with line and column of the CSV file.
-pub(super) fn load(
-    entry: &SeriesEntry,
-    start: Option<Timestamp>,
-    dir: &Path,
-    tree: &Tree,
-) -> Result<Column, Diagnostic> {
-    let at = |field: &str| tree.get(field).and_then(|tree| tree.span.clone());
-    let wrong = |field: &str, message: String| Diagnostic::new(message, at(field));
-    let separator = separator_byte(entry.separator).ok_or_else(|| {
-        let message = format!(
-            "series of \"{}\": separator = {:?} cannot separate numbers",
-            entry.signal, entry.separator
-        );
-        wrong("separator", message).with_hint("usual are \",\", \";\" and \"\\t\"")
-    })?;
-    if entry.scale == 0.0 {
-        let message =
-            format!("series of \"{}\": scale = 0 leaves nothing of the file", entry.signal);
-        return Err(
-            wrong("scale", message).with_hint("a constant is given where the signal starts")
-        );
+/// A file with the way to read it: name, separator, column of the times.
+type Key = (String, char, Option<String>);
+
+fn key(entry: &SeriesEntry) -> Key {
+    (entry.file.clone(), entry.separator, entry.time_column.clone())
+}
+
+/// What is wrong, and at which field of the entry and line of the file.
+#[derive(Debug, Clone)]
+struct Problem {
+    field: &'static str,
+    line: u64,
+    message: String,
+    hint: Option<String>,
+}
+
+impl Problem {
+    fn new(field: &'static str, line: u64, message: String) -> Self {
+        Self { field, line, message, hint: None }
     }
-    let path = dir.join(&entry.file);
-    let file = std::fs::File::open(&path).map_err(|error| {
-        wrong("file", format!("series \"{}\": cannot read {}: {error}", entry.signal, entry.file))
-            .with_hint("the path is relative to the folder of the model file")
+
+    fn diagnostic(self, tree: &Tree) -> Diagnostic {
+        let span = tree.get(self.field).and_then(|tree| tree.span.clone());
+        let problem = Diagnostic::new(self.message, span);
+        match self.hint {
+            Some(hint) => problem.with_hint(hint),
+            None => problem,
+        }
+    }
+}
+
+/// Values of a column up to its first problem.
+struct Values {
+    values: Arc<[f64]>,
+    problem: Option<Problem>,
+}
+
+/// What was wanted of a file.
+struct Contents {
+    headers: Vec<String>,
+    times: Values,
+    /// By their place in the file.
+    columns: HashMap<usize, Values>,
+}
+
+/// The files of all series of a model.
+pub(super) struct Files<'a> {
+    dir: &'a Path,
+    start: Option<Timestamp>,
+    wanted: HashMap<Key, BTreeSet<&'a str>>,
+    read: HashMap<Key, Result<Contents, Problem>>,
+}
+
+impl<'a> Files<'a> {
+    /// Nothing is read yet.
+    pub(super) fn new(
+        dir: &'a Path,
+        start: Option<Timestamp>,
+        entries: impl Iterator<Item = &'a SeriesEntry>,
+    ) -> Self {
+        let mut wanted: HashMap<Key, BTreeSet<&str>> = HashMap::new();
+        for entry in entries {
+            wanted.entry(key(entry)).or_default().insert(&entry.column);
+        }
+        Self { dir, start, wanted, read: HashMap::new() }
+    }
+
+    /// The column that an entry names.
+    ///
+    /// # Errors
+    /// A missing or unreadable file, an unknown column, a line that is not a number, times that do not
+    /// rise: each with line and column of the CSV file.
+    pub(super) fn load(&mut self, entry: &SeriesEntry, tree: &Tree) -> Result<Column, Diagnostic> {
+        let separator = separator_byte(entry.separator).ok_or_else(|| {
+            let message = format!(
+                "series of \"{}\": separator = {:?} cannot separate numbers",
+                entry.signal, entry.separator
+            );
+            Problem {
+                hint: Some("usual are \",\", \";\" and \"\\t\"".into()),
+                ..Problem::new("separator", 0, message)
+            }
+            .diagnostic(tree)
+        })?;
+        let key = key(entry);
+        let columns = self.wanted.get(&key).cloned().unwrap_or_default();
+        let (dir, start) = (self.dir, self.start);
+        let read = self
+            .read
+            .entry(key)
+            .or_insert_with(|| contents(dir, start, entry, separator, &columns));
+        let contents = match read {
+            Ok(contents) => contents,
+            Err(problem) => return Err(problem.clone().diagnostic(tree)),
+        };
+        let place = find(&contents.headers, &entry.file, &entry.column, "column");
+        let column = place.and_then(|place| {
+            let Values { values, problem } = &contents.columns[&place];
+            let (first, second) = (problem.as_ref(), contents.times.problem.as_ref());
+            let earlier = match (first, second) {
+                (Some(first), Some(second)) if second.line < first.line => Some(second),
+                (first, second) => first.or(second),
+            };
+            match earlier {
+                Some(problem) => Err(problem.clone()),
+                None if values.is_empty() => {
+                    Err(Problem::new("file", 0, format!("{} has no rows", entry.file)))
+                }
+                None if (entry.scale, entry.offset) == (1.0, 0.0) => {
+                    Ok((contents.times.values.clone(), values.clone()))
+                }
+                None => {
+                    let scaled = values.iter().map(|value| value * entry.scale + entry.offset);
+                    Ok((contents.times.values.clone(), scaled.collect()))
+                }
+            }
+        });
+        column.map_err(|problem| problem.diagnostic(tree))
+    }
+}
+
+fn find(headers: &[String], file: &str, name: &str, field: &'static str) -> Result<usize, Problem> {
+    headers.iter().position(|header| header == name).ok_or_else(|| {
+        let hint = did_you_mean(name, headers.iter().map(String::as_str))
+            .unwrap_or_else(|| format!("its columns: {}", headers.join(", ")));
+        Problem {
+            hint: Some(hint),
+            ..Problem::new(field, 0, format!("{file} has no column \"{name}\""))
+        }
+    })
+}
+
+/// Times and wanted columns of a file.
+fn contents(
+    dir: &Path,
+    start: Option<Timestamp>,
+    entry: &SeriesEntry,
+    separator: u8,
+    wanted: &BTreeSet<&str>,
+) -> Result<Contents, Problem> {
+    let name = &entry.file;
+    let file = std::fs::File::open(dir.join(name)).map_err(|error| Problem {
+        hint: Some("the path is relative to the folder of the model file".into()),
+        ..Problem::new(
+            "file",
+            0,
+            format!("series \"{}\": cannot read {name}: {error}", entry.signal),
+        )
     })?;
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(separator)
         .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(file);
-    let headers = reader
-        .headers()
-        .map_err(|error| wrong("file", format!("{}: {error}", entry.file)))?
-        .clone();
-    let find = |name: &str, field: &str| {
-        headers.iter().position(|header| header == name).ok_or_else(|| {
-            let hint = did_you_mean(name, headers.iter()).unwrap_or_else(|| {
-                format!("its columns: {}", headers.iter().collect::<Vec<_>>().join(", "))
-            });
-            wrong(field, format!("{} has no column \"{name}\"", entry.file)).with_hint(hint)
-        })
-    };
-    let value_column = find(&entry.column, "column")?;
+        .from_reader(std::io::BufReader::with_capacity(1 << 16, file));
+    let unreadable =
+        |line: u64, error: csv::Error| Problem::new("file", line, format!("{name}: {error}"));
+    let headers = reader.headers().map_err(|error| unreadable(0, error))?;
+    let headers: Vec<String> = headers.iter().map(|header| header.trim().to_owned()).collect();
     let time_column = match &entry.time_column {
-        Some(name) => find(name, "time_column")?,
+        // A column of values that is missing is told first.
+        Some(time) => find(&headers, name, &entry.column, "column")
+            .and_then(|_| find(&headers, name, time, "time_column"))?,
         None => 0,
     };
-    let (mut times_s, mut values) = (Vec::new(), Vec::new());
-    for record in reader.records() {
-        let record = record.map_err(|error| wrong("file", format!("{}: {error}", entry.file)))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let cell = |column: usize| record.get(column).unwrap_or_default();
-        let value: f64 = parse_finite(cell(value_column)).ok_or_else(|| {
-            let message = format!(
-                "{} line {line}: \"{}\" in column \"{}\" is not a finite number",
-                entry.file,
-                cell(value_column),
-                entry.column
-            );
-            wrong("column", message)
-        })?;
-        let time_s = time_s(cell(time_column), start)
-            .map_err(|problem| wrong("file", format!("{} line {line}: {problem}", entry.file)))?;
-        if let Some(before) = times_s.last().filter(|before| **before >= time_s) {
-            let message =
-                format!("{} line {line}: time {time_s} s is not after {before} s", entry.file);
-            return Err(wrong("file", message).with_hint("the times of a series must rise"));
+    let places = headers.iter().enumerate().filter(|(_, header)| wanted.contains(header.as_str()));
+    // Of columns with the same name the first counts.
+    let mut columns: Vec<(usize, Vec<f64>, Option<Problem>)> = Vec::new();
+    for (place, header) in places {
+        if columns.iter().all(|(before, ..)| headers[*before] != *header) {
+            columns.push((place, Vec::new(), None));
         }
-        times_s.push(time_s);
-        values.push(value * entry.scale + entry.offset);
     }
-    if values.is_empty() {
-        return Err(wrong("file", format!("{} has no rows", entry.file)));
+    let mut times: (Vec<f64>, Option<Problem>) = (Vec::new(), None);
+    let mut record = csv::ByteRecord::new();
+    loop {
+        let line = reader.position().line();
+        match reader.read_byte_record(&mut record) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) => {
+                times.1.get_or_insert(unreadable(line, error));
+                break;
+            }
+        }
+        let line = record.position().map_or(line, csv::Position::line);
+        let cell = |column: usize| String::from_utf8_lossy(record.get(column).unwrap_or_default());
+        for (place, values, problem) in &mut columns {
+            let text = cell(*place);
+            match parse_finite(text.trim()) {
+                Some(value) => values.push(value),
+                None if problem.is_none() => {
+                    let message = format!(
+                        "{name} line {line}: \"{}\" in column \"{}\" is not a finite number",
+                        text.trim(),
+                        headers[*place]
+                    );
+                    *problem = Some(Problem::new("column", line, message));
+                }
+                None => {}
+            }
+        }
+        if times.1.is_some() {
+            continue;
+        }
+        match time_s(cell(time_column).trim(), start) {
+            Err(problem) => {
+                let message = format!("{name} line {line}: {problem}");
+                times.1 = Some(Problem::new("file", line, message));
+            }
+            Ok(time_s) => match times.0.last().filter(|before| **before >= time_s) {
+                Some(before) => {
+                    let message =
+                        format!("{name} line {line}: time {time_s} s is not after {before} s");
+                    times.1 = Some(Problem {
+                        hint: Some("the times of a series must rise".into()),
+                        ..Problem::new("file", line, message)
+                    });
+                }
+                None => times.0.push(time_s),
+            },
+        }
     }
-    Ok((times_s, values))
+    let values = |values: Vec<f64>, problem| Values { values: values.into(), problem };
+    Ok(Contents {
+        headers,
+        times: values(times.0, times.1),
+        columns: columns
+            .into_iter()
+            .map(|(place, found, problem)| (place, values(found, problem)))
+            .collect(),
+    })
 }
 
 fn parse_finite(text: &str) -> Option<f64> {
