@@ -110,12 +110,6 @@ pub fn run_error(py: Python<'_>, error: &SimulationError, text: &str, origin: &O
                 value.setattr("iterations", iterations)
             })
         }
-        E::Hunting { time, valve, .. } => {
-            with(py, python::ConvergenceError::new_err(message), |value| {
-                value.setattr("time", time)?;
-                value.setattr("component", valve)
-            })
-        }
         E::Singular { time, .. } => with(py, python::ConvergenceError::new_err(message), |value| {
             value.setattr("time", time)
         }),

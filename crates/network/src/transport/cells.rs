@@ -165,7 +165,7 @@ impl Cells {
     }
 
     /// The cells in the order from an end.
-    pub(super) fn from_end(&self, edge: usize, port: Port) -> Option<Content> {
+    pub(super) fn seen_from(&self, edge: usize, port: Port) -> Option<Content> {
         let (first, water, wall) = self.numbers(edge)?;
         let line = |t_k: f64| Linear::new(t_k, 0.0);
         let order = |i: usize, last: usize| if port == Port::A { i } else { last - i };

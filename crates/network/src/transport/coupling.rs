@@ -18,6 +18,7 @@ use super::Transport;
 use crate::graph::{Coupling, Network};
 use crate::state::NetworkState;
 use crate::two_port::EdgeThermal;
+use anergy_core::ids::EdgeId;
 
 /// Length of a stretch, m, at most.
 const STRETCH_M: f64 = 20.0;
@@ -108,7 +109,7 @@ impl Transport {
     ) {
         let cp = network.medium.heat_capacity_j_kg_k;
         for (coupling, &n) in network.couplings.iter().zip(&self.coupled.stretches) {
-            let [one, two] = coupling.edges.map(|edge| edge.index());
+            let [one, two] = coupling.edges.map(EdgeId::index);
             let thermal = |edge: usize| network.edges[edge].element.thermal();
             let (EdgeThermal::PlugFlow(pipe_1), EdgeThermal::PlugFlow(pipe_2)) =
                 (thermal(one), thermal(two))

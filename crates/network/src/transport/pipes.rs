@@ -153,7 +153,7 @@ impl Transport {
     ) -> f64 {
         let (m_flow_kg_s, surroundings_k) = (state.m_flow_kg_s[i], state.surroundings_k[i]);
         let port = Port::upstream(m_flow_kg_s);
-        if let Some(mut content) = state.cells.from_end(i, port) {
+        if let Some(mut content) = state.cells.seen_from(i, port) {
             let step = cells::Step { m_flow_kg_s, surroundings_k, dt_s };
             let (_, lost) = content.pass(pipe, &step);
             state.cells.put(i, port, &content, t_in_k);
@@ -317,7 +317,7 @@ fn content_relation(
     dt_s: f64,
 ) -> Relation {
     let surroundings_k = state.surroundings_k[i];
-    match state.cells.from_end(i, Port::upstream(m_flow_kg_s)) {
+    match state.cells.seen_from(i, Port::upstream(m_flow_kg_s)) {
         None => plug_flow::relation(&state.parcels, i, pipe, m_flow_kg_s, surroundings_k, dt_s),
         Some(mut content) => {
             let step = cells::Step { m_flow_kg_s, surroundings_k, dt_s };

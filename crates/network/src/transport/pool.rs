@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 /// Numbers of parcels a range can hold.
 const CAPACITIES: [u32; 7] = [3, 6, 12, 25, 50, 100, PARCELS_PER_PIPE as u32];
-/// Parcels for which space is reserved at the start: in each pipe and in all.
-const RESERVED: (usize, usize) = (8, 4096);
+/// Parcels by which an arena can grow, from its start or from a snapshot on, before a step allocates.
+const ROOM: usize = 4096;
 
 /// Where a pipe's parcels are in the arena: a ring buffer in a range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,7 +32,7 @@ impl Ring {
 }
 
 /// The arena and its rings.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Pool {
     arena: Vec<Parcel>,
     rings: Vec<Ring>,
@@ -40,10 +40,19 @@ pub(super) struct Pool {
     free: [Vec<u32>; CAPACITIES.len()],
 }
 
+/// A copy has the same room to grow: the state of a run is the copy of another.
+impl Clone for Pool {
+    fn clone(&self) -> Self {
+        let mut arena = Vec::with_capacity(self.arena.len() + ROOM);
+        arena.extend_from_slice(&self.arena);
+        Self { arena, rings: self.rings.clone(), free: self.free.clone() }
+    }
+}
+
 impl Pool {
     /// One parcel in each of the rings.
     pub(super) fn new(parcels: &[Parcel]) -> Self {
-        let mut arena = Vec::with_capacity(RESERVED.0 * parcels.len() + RESERVED.1);
+        let mut arena = Vec::with_capacity(CAPACITIES[0] as usize * parcels.len() + ROOM);
         let rings = parcels.iter().map(|parcel| {
             let start = arena.len() as u32;
             arena.resize(arena.len() + CAPACITIES[0] as usize, Parcel::default());

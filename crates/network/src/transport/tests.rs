@@ -55,6 +55,7 @@ impl Rig {
             prescriptions: vec![],
             couplings: couplings.to_vec(),
             soil: vec![],
+            regulators: vec![],
         };
         let mut state = NetworkState::new(&network, initial_k);
         state.surroundings_k.fill(280.0);
@@ -153,7 +154,7 @@ fn energy_closes_in_any_history_with_every_wall_dispersion_and_neighbour() {
                 reversed: true,
                 conductance_w_k: 80.0,
             };
-            random_history(&mut Rig::new(&[one.clone()], &[], 300.0), 1, 150);
+            random_history(&mut Rig::new(std::slice::from_ref(&one), &[], 300.0), 1, 150);
             random_history(&mut Rig::new(&[one, other], &[coupling], 300.0), 7, 150);
         }
     }
@@ -227,7 +228,7 @@ fn dispersion_smears_like_the_error_function() {
         ..pipe(WallModel::None)
     };
     for dt_s in [10.0, 100.0] {
-        let mut rig = Rig::new(&[params.clone()], &[], 300.0);
+        let mut rig = Rig::new(std::slice::from_ref(&params), &[], 300.0);
         rig.flow(0, 0.0, 300.0);
         rig.state.cells.fill(0, |x| if x < 0.5 { (340.0, 340.0) } else { (300.0, 300.0) });
         for _ in 0..(2000.0 / dt_s) as usize {
