@@ -76,7 +76,7 @@ impl Trace {
         let rows = || self.times_s.iter().zip(&self.sf4_degc).filter(|(_, t)| **t < degc);
         let times = || rows().map(|(time, _)| *time);
         let (first, last) =
-            (times().next().unwrap_or(f64::NAN), times().last().unwrap_or(f64::NAN));
+            (times().next().unwrap_or(f64::NAN), times().next_back().unwrap_or(f64::NAN));
         (first, last, times().count() as f64 * (self.times_s[1] - self.times_s[0]))
     }
 }

@@ -98,6 +98,15 @@ impl<'a> Files<'a> {
             }
             .diagnostic(tree)
         })?;
+        if entry.scale == 0.0 {
+            let message =
+                format!("series of \"{}\": scale = 0 leaves nothing of the file", entry.signal);
+            return Err(Problem {
+                hint: Some("a constant is given where the signal starts".into()),
+                ..Problem::new("scale", 0, message)
+            }
+            .diagnostic(tree));
+        }
         let key = key(entry);
         let columns = self.wanted.get(&key).cloned().unwrap_or_default();
         let (dir, start) = (self.dir, self.start);
