@@ -7,7 +7,7 @@
 //! between supply and return of a house, flow = load/(cp 20 K), the same supply and return pipes.
 //!
 //! **Chosen here** a by-pass flow of [`BYPASS_KG_S`] in every house, that of the published
-//! AixLib/uesgraphs script; the load is linear between its rows; the water is that of [`HEAD`]; the
+//! AixLib/uesgraphs script; the load is linear between its rows; the water is that of `HEAD`; the
 //! wall of the pipes stores nothing. Where the load is less than the by-pass could give, the house
 //! returns warmer water; where the water that arrives is too cold to be cooled by 20 K to
 //! `coldest_return_degc`, the load is not met.

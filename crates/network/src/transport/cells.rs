@@ -8,7 +8,7 @@
 //! the pipe by its transfer units, not by metres. Cells of water move with the flow, so that advection is
 //! exact; what enters mixes within the first of them, and a front is smeared over one cell whatever its
 //! way. Exchange and movement alternate (half a step of exchange at both ends: second order), in at most
-//! [`MOVES`] parts of a step: none shorter than needed for a sixteenth of the content or half a time
+//! `MOVES` parts of a step: none shorter than needed for a sixteenth of the content or half a time
 //! constant of the film. In each stretch the exchange of wall and water (two parts of cells) is the exact
 //! exponential of its 2 x 2 matrix; it conserves heat. Dispersion is implicit between neighbouring cells: stable for
 //! any step, and the variance of a front grows by exactly `2 D dt`; nothing is dispersed through the ends.
