@@ -17,7 +17,6 @@ use anergy_tests::pages::{write_page, writes_pages};
 use anergy_tests::reference_data;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// The tools that agree, and the column of each quantity.
 const TOOLS: [&str; 3] =
@@ -291,7 +290,6 @@ fn page() {
     );
     let definition = destest::model(&folder.join("definition")).unwrap();
     let days = 256.0;
-    let start = Instant::now();
     let mut simulation = simulation(&definition);
     let options = RunOptions {
         until: Time::from_s(days * 86_400.0),
@@ -299,7 +297,6 @@ fn page() {
         step: None,
     };
     let recording = recorded(&mut simulation, options);
-    let spent = start.elapsed().as_secs_f64();
     let balances = Balances::of(&simulation);
     let source_mwh = source_j(&recording, &balances) / 3.6e9;
     let loss_mwh = balances.loss_j / 3.6e9;
@@ -307,7 +304,7 @@ fn page() {
         text,
         "\n## The 256 days of the load profile\n\nStep 1 min, hourly record: {source_mwh:.2} MWh from the source, of \
          which {loss_mwh:.2} MWh ({:.1} %) are lost; mean loss {:.0} W; the balance of heat closes to \
-         {:.0e}. It took {spent:.1} s, recording in memory, on a machine that may have been busy.\n",
+         {:.0e}.\n",
         100.0 * loss_mwh / source_mwh,
         balances.loss_j / (days * 86_400.0),
         balances.heat_error()

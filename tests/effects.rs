@@ -126,6 +126,74 @@ fn surroundings_arrive_late() {
     assert!(problems.contains("lag_s = 50 needs a temperature that changes"), "{problems}");
 }
 
+/// Temperature at the outlet over time, degC, from 20 degC everywhere, with 60 degC entering from t = 0 and no
+/// heat loss.
+fn front(effect: &str, until_s: usize) -> Vec<f64> {
+    let text = PIPE
+        .replace("initial_degc = 60", "initial_degc = 20")
+        .replace("insulation_resistance_k_m_w = 2\n", "");
+    let model = Model::from_toml(&format!("{text}{effect}"), Path::new(".")).unwrap();
+    let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+    let outlet = simulation.channel("pipe.t_b_k").unwrap();
+    let second = Time::from_s(1.0).unwrap();
+    let at = |simulation: &mut Simulation, s: usize| {
+        simulation.advance_to(Time::from_s(s as f64).unwrap(), second).unwrap();
+        simulation.get(outlet) - 273.15
+    };
+    (0..until_s).map(|s| at(&mut simulation, s)).collect()
+}
+
+/// First second at which the outlet is warmer.
+fn passes(front: &[f64], degc: f64) -> f64 {
+    front.iter().position(|t| *t > degc).unwrap() as f64
+}
+
+#[test]
+fn a_wall_delays_the_front() {
+    // Water 1000 pi/4 0.022^2 100 = 38.013 kg, 380.1 s at 0.1 kg/s. A wall of half the capacity of the
+    // water, 0.5 * 380.13 * 4.18 = 794.5 J/(m K), delays the middle of the front to 570.2 s.
+    let sharp = front("", 400);
+    assert!((passes(&sharp, 40.0) - 380.1).abs() < 2.0);
+    let effect = "[[effect]]\nid = \"P1\"\ncomponent = \"pipe\"\nwall_capacity_j_m_k = 794.5\n";
+    let late = front(effect, 800);
+    assert!((passes(&late, 40.0) / 570.2 - 1.0).abs() < 0.03, "{}", passes(&late, 40.0));
+    // A better film rounds less.
+    let width = |front: &[f64]| passes(front, 55.0) - passes(front, 25.0);
+    let better = front(&format!("{effect}film_factor = 4\n"), 800);
+    assert!(width(&better) < 0.8 * width(&late), "{} {}", width(&better), width(&late));
+}
+
+#[test]
+fn a_standing_pipe_cools_by_its_own_factor() {
+    // 2 K m/W * 1588.9 J/(m K) = 3177.9 s: after 1800 s 10 + 50 exp(-0.56641) = 38.378, with a factor 2
+    // 26.105 degC. In flow the factor does not count.
+    let standing = |effect: &str| {
+        let text = PIPE.replace("m_flow_kg_s = 0.1", "m_flow_kg_s = 0");
+        let model = Model::from_toml(&format!("{text}{effect}"), Path::new(".")).unwrap();
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        let end = Time::from_s(1800.0).unwrap();
+        simulation.advance_to(end, Time::from_s(60.0).unwrap()).unwrap();
+        simulation.get(simulation.channel("pipe.t_b_k").unwrap()) - 273.15
+    };
+    let effect = "[[effect]]\nid = \"P5\"\ncomponent = \"pipe\"\nfactor = 2\n";
+    assert!((standing("") - 38.378).abs() < 2e-3, "{}", standing(""));
+    assert!((standing(effect) - 26.105).abs() < 2e-3, "{}", standing(effect));
+    assert_eq!(outlet_degc(&model(effect)), outlet_degc(&model("")));
+}
+
+#[test]
+fn dispersion_blurs_the_front() {
+    // v = 100 m/380.13 s = 0.26307 m/s; D = 0.05 m2/s: the front arrives with a standard deviation of
+    // sqrt(2 D tau)/v = sqrt(2 * 0.05 * 380.13)/0.26307 = 23.44 s, so that 16 % and 84 % of it lie
+    // 46.9 s apart.
+    let effect = "[[effect]]\nid = \"P7\"\ncomponent = \"pipe\"\ndispersion_m2_s = 0.05\n";
+    let blurred = front(effect, 600);
+    let (early, late) =
+        (passes(&blurred, 20.0 + 0.159 * 40.0), passes(&blurred, 20.0 + 0.841 * 40.0));
+    assert!(((late - early) / 46.9 - 1.0).abs() < 0.08, "{early} {late}");
+    assert!((passes(&blurred, 40.0) - 380.1).abs() < 4.0, "{}", passes(&blurred, 40.0));
+}
+
 #[test]
 fn friction_follows_factor_and_roughness() {
     let before = dp_pa(&model(""));
