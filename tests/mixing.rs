@@ -269,3 +269,56 @@ fn the_heat_of_every_pipe_closes() {
         }
     }
 }
+
+#[test]
+fn a_load_does_not_cool_below_its_coldest_return() {
+    // 0.1 kg/s of 60 degC, then of 12 degC; 12.54 kW need 30 K: 30 degC leave, then 10 degC are the limit,
+    // 0.1 * 4180 * 2 = 836 W, from the first step on in which cold water arrives.
+    let text = r#"
+format = 1
+[run]
+initial_degc = 60
+[[node]]
+id = "in"
+kind = "pressure_boundary"
+pressure_bar = 1
+temperature_degc = 60
+[[node]]
+id = "out"
+kind = "pressure_boundary"
+pressure_bar = 1
+[[edge]]
+id = "load"
+kind = "flow_source"
+from = "out"
+to = "in"
+m_flow_kg_s = 0
+[[unit]]
+id = "house"
+port = "load"
+kind = "heat_load"
+load_kw = 12.54
+temperature_difference_k = 30
+coldest_return_degc = 10
+[[schedule]]
+signal = "in.temperature_k"
+unit = "degC"
+points = [[0, 60], [1800, 12]]
+"#;
+    let mut simulation = simulation(text);
+    let step = Time::from_s(900.0).unwrap();
+    for (end_s, out_degc, q_w) in
+        [(1800.0, 30.0, 12_540.0), (2700.0, 10.0, 836.0), (3600.0, 10.0, 836.0)]
+    {
+        simulation.advance_to(Time::from_s(end_s).unwrap(), step).unwrap();
+        let get = |name: &str| simulation.get(simulation.channel(name).unwrap());
+        assert!(
+            (get("house.t_out_k") - 273.15 - out_degc).abs() < 1e-3,
+            "{}",
+            get("house.t_out_k")
+        );
+        assert!((get("house.q_flow_w") + q_w).abs() < 1.0, "{}", get("house.q_flow_w"));
+        assert!((get("house.unmet_w") - (12_540.0 - q_w)).abs() < 1.0);
+    }
+    assert!(Balances::of(&simulation).heat_error() < 1e-9);
+}

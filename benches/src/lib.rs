@@ -101,7 +101,7 @@ pub fn two_pipe_network_of_a_year(consumers: usize, seed: u64, profiles: &str) -
         let _ = writeln!(
             out,
             "[[station]]\nsite = \"c{i}\"\nkind = \"prescribed_flow\"\n[[unit]]\nsite = \"c{i}\"\n\
-             kind = \"heat_load\"\ntemperature_difference_k = 30\nv_flow_min_l_min = 0.3\ncoldest_return_degc = 35\n\
+             kind = \"heat_load\"\ntemperature_difference_k = 30\nv_flow_min_l_min = 0.3\ncoldest_return_degc = 20\n\
              [[series]]\nfile = \"{profiles}\"\ncolumn = \"load_{}_kw\"\nunit = \"kW\"\n\
              signal = \"c{i}.unit.load_w\"\ninterpolation = \"linear\"",
             (size as usize).min(PROFILES - 1)

@@ -52,6 +52,24 @@ pub enum Outlet {
     Temperature(f64),
     /// It takes up this heat flow, W (negative: gives it off).
     HeatFlow(f64),
+    /// It gives off heat, but is not cooled below a temperature; water that is colder stays as it is.
+    Cooled {
+        /// Heat flow that is wanted of it, W.
+        wanted_w: f64,
+        /// Lowest temperature at which it leaves, K.
+        coldest_k: f64,
+    },
+}
+
+impl Outlet {
+    /// The heat flow into the water where no limit of the temperature acts, W; `None` for a temperature.
+    pub fn heat_flow_w(&self) -> Option<f64> {
+        match *self {
+            Self::Temperature(_) => None,
+            Self::HeatFlow(q_w) => Some(q_w),
+            Self::Cooled { wanted_w, .. } => Some(-wanted_w),
+        }
+    }
 }
 
 impl Default for PortRequest {

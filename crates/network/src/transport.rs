@@ -35,19 +35,22 @@ use anergy_core::numerics::sparse::SparseLu;
 pub const NODE_RELAXATION_S: f64 = 3600.0;
 const NONE: u32 = u32::MAX;
 
-/// Mean outlet temperature of an edge: `constant_k + of_inlet T_in + of_partner T_in(partner)`.
+/// Mean outlet temperature of an edge: `constant_k + of_inlet T_in + of_partner T_in(partner)`, at least
+/// `coldest_k` where the inlet is not colder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Relation {
     constant_k: f64,
     of_inlet: f64,
     of_partner: f64,
+    coldest_k: f64,
 }
 
 impl Relation {
-    const PASS: Self = Self { constant_k: 0.0, of_inlet: 1.0, of_partner: 0.0 };
+    const PASS: Self =
+        Self { constant_k: 0.0, of_inlet: 1.0, of_partner: 0.0, coldest_k: f64::NEG_INFINITY };
 
     fn constant(t_k: f64) -> Self {
-        Self { constant_k: t_k, of_inlet: 0.0, of_partner: 0.0 }
+        Self { constant_k: t_k, of_inlet: 0.0, ..Self::PASS }
     }
 
     /// Behind a mixed volume of temperature `t_k` that keeps the share `kept`.
@@ -56,6 +59,7 @@ impl Relation {
             constant_k: kept * t_k + (1.0 - kept) * self.constant_k,
             of_inlet: (1.0 - kept) * self.of_inlet,
             of_partner: (1.0 - kept) * self.of_partner,
+            ..self
         }
     }
 }

@@ -33,6 +33,10 @@ impl Transport {
                     Outlet::HeatFlow(q_w) => {
                         Relation { constant_k: q_w / (m.abs() * cp), ..Relation::PASS }
                     }
+                    Outlet::Cooled { wanted_w, coldest_k } => {
+                        let constant_k = -wanted_w / (m.abs() * cp);
+                        Relation { constant_k, coldest_k, ..Relation::PASS }
+                    }
                 },
             },
             EdgeThermal::PlugFlow(pipe) => match dt_s {
@@ -102,12 +106,14 @@ impl Transport {
             return state.t_edge_k[i];
         }
         let request = &state.requests[port as usize];
+        let t_k = state.t_secondary_k[port as usize];
+        let capacity = request.m_flow_kg_s.abs() * network.medium.heat_capacity_j_kg_k;
+        let rise_k = |q_w: f64| if capacity > 0.0 { q_w / capacity } else { 0.0 };
         match request.outlet {
             Outlet::Temperature(t_k) => t_k,
-            Outlet::HeatFlow(q_w) => {
-                let capacity = request.m_flow_kg_s.abs() * network.medium.heat_capacity_j_kg_k;
-                let rise_k = if capacity > 0.0 { q_w / capacity } else { 0.0 };
-                state.t_secondary_k[port as usize] + rise_k
+            Outlet::HeatFlow(q_w) => t_k + rise_k(q_w),
+            Outlet::Cooled { wanted_w, coldest_k } => {
+                (t_k + rise_k(-wanted_w)).max(coldest_k.min(t_k))
             }
         }
     }

@@ -1,12 +1,14 @@
 //! Nodes during a step: mixing in flow direction, and loops that have to be solved together.
 
-use super::{NODE_RELAXATION_S, Transport, volume_shares};
+use super::{NODE_RELAXATION_S, Relation, Transport, volume_shares};
 use crate::graph::{Network, NodeKind};
 use crate::state::{LEAST_WATER_KG, NetworkState};
 use anergy_core::error::FactorError;
 
 /// Share of the ambient temperature at a node in the steady state, at least: more than rounding.
 const LEAST_RELAXATION: f64 = 1e-12;
+/// Rounds in which coldest temperatures are held in a loop; one cooled edge may warm the next.
+const MOST_HELD: usize = 8;
 
 impl Transport {
     /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring. A volume that
@@ -71,7 +73,14 @@ impl Transport {
             }
             return Ok(());
         }
-        self.solve_loops(network, state, dt_s)
+        self.solve_loops(network, state, dt_s)?;
+        for _ in 0..MOST_HELD {
+            if !self.hold_coldest(network, state) {
+                break;
+            }
+            self.solve_loops(network, state, dt_s)?;
+        }
+        Ok(())
     }
 
     /// Temperature of a node whose upstream nodes are known.
@@ -133,7 +142,28 @@ impl Transport {
             let inlet = network.edges[other].upstream(state.m_flow_kg_s[other]).index();
             t_k += relation.of_partner * self.t_mean_k[inlet];
         }
+        if t_k < relation.coldest_k {
+            let t_in_k = self.t_mean_k[edge.upstream(state.m_flow_kg_s[i]).index()];
+            t_k = t_k.max(relation.coldest_k.min(t_in_k));
+        }
         t_k
+    }
+
+    /// Loops are linear: what would be cooled too far in them gets its coldest temperature. False when
+    /// nothing was.
+    fn hold_coldest(&mut self, network: &Network, state: &NetworkState) -> bool {
+        let mut held = false;
+        for i in 0..self.relation.len() {
+            let (m, Relation { constant_k, coldest_k, .. }) =
+                (state.m_flow_kg_s[i], self.relation[i]);
+            let t_in_k = self.t_mean_k[network.edges[i].upstream(m).index()];
+            if m != 0.0 && constant_k + t_in_k < coldest_k {
+                self.relation[i] =
+                    if t_in_k < coldest_k { Relation::PASS } else { Relation::constant(coldest_k) };
+                held = true;
+            }
+        }
+        held
     }
 
     /// Orders the nodes so that each comes after those it depends on; kept while nothing turns.

@@ -64,7 +64,7 @@ impl Relation {
         Self {
             constant_k: volume.k(start_k, self.constant_k, surroundings_k),
             of_inlet: volume.of_inlet * self.of_inlet,
-            of_partner: 0.0,
+            ..Relation::PASS
         }
     }
 
@@ -73,7 +73,7 @@ impl Relation {
         Self {
             constant_k: self.constant_k + self.of_inlet * volume.k(start_k, 0.0, surroundings_k),
             of_inlet: self.of_inlet * volume.of_inlet,
-            of_partner: 0.0,
+            ..Relation::PASS
         }
     }
 }
@@ -322,7 +322,7 @@ fn content_relation(
         Some(mut content) => {
             let step = cells::Step { m_flow_kg_s, surroundings_k, dt_s };
             let left = content.pass(pipe, &step).0.scaled(1.0 / (m_flow_kg_s.abs() * dt_s));
-            Relation { constant_k: left.value, of_inlet: left.slope, of_partner: 0.0 }
+            Relation { constant_k: left.value, of_inlet: left.slope, ..Relation::PASS }
         }
     }
 }

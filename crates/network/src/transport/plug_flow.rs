@@ -50,7 +50,7 @@ pub(super) fn relation(
     Relation {
         constant_k: (1.0 - surplus) * leaving_k + surplus * surroundings_k * (1.0 - decay),
         of_inlet: surplus * decay,
-        of_partner: 0.0,
+        ..Relation::PASS
     }
 }
 

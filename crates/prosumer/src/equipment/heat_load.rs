@@ -5,7 +5,8 @@
 //! gives off `Q`, but is not cooled below `coldest_return_k`; what is missing is `unmet_w`.
 //!
 //! **Assumptions** no storage, no room: the load does not react. **Numerics** the flow follows from the
-//! temperature that arrived in the step before; the heat is exact with the flow of the present step.
+//! temperature that arrived in the step before; the heat is exact with the flow of the present step, and the
+//! coldest return holds with the temperature of the present step.
 //!
 //! **Sources** ideal substation of the DESTEST definition (`destest2019`).
 
@@ -166,8 +167,10 @@ impl ThermalUnit for HeatLoad {
             ReturnWater::Difference(_) => self.coldest_return_k,
         };
         let available_w = capacity_w_k(&self.medium, m) * (t_in_k - limit_k).max(0.0);
-        wanted[0] =
-            PortRequest { m_flow_kg_s: -m, outlet: Outlet::HeatFlow(-load_w.min(available_w)) };
+        // The temperature may have fallen since it was known.
+        let outlet =
+            Outlet::Cooled { wanted_w: load_w.min(available_w), coldest_k: self.coldest_return_k };
+        wanted[0] = PortRequest { m_flow_kg_s: -m, outlet };
     }
 
     fn advance(
@@ -204,9 +207,9 @@ mod tests {
         let unit = HeatLoadParams::default().build(&Medium::default()).unwrap();
         let wanted = request(&unit, 340.0, 10_000.0);
         assert!((wanted.m_flow_kg_s + 0.079_745).abs() < 1e-6);
-        assert_eq!(wanted.outlet, Outlet::HeatFlow(-10_000.0));
+        assert_eq!(wanted.outlet.heat_flow_w(), Some(-10_000.0));
         // Water of 283.15 K can give 0.079745 * 4180 * 5 = 1666.7 W before it is at 5 degC.
-        let Outlet::HeatFlow(q_w) = request(&unit, 283.15, 10_000.0).outlet else { panic!() };
+        let q_w = request(&unit, 283.15, 10_000.0).outlet.heat_flow_w().unwrap();
         assert!((q_w + 1666.7).abs() < 0.1, "{q_w}");
     }
 
@@ -223,10 +226,8 @@ mod tests {
         // 65/40 degC: 10000/(4180 * 25)
         assert!((request(&unit, 338.15, 10_000.0).m_flow_kg_s + 0.095_694).abs() < 1e-6);
         // Cold supply: largest flow, no heat.
-        assert_eq!(
-            request(&unit, 300.0, 1e6),
-            PortRequest { m_flow_kg_s: -1.0, outlet: Outlet::HeatFlow(-0.0) }
-        );
+        let cold = request(&unit, 300.0, 1e6);
+        assert_eq!((cold.m_flow_kg_s, cold.outlet.heat_flow_w()), (-1.0, Some(-0.0)));
         assert!(HeatLoadParams { return_k: None, ..params }.build(&Medium::default()).is_err());
     }
 }
