@@ -322,3 +322,33 @@ points = [[0, 60], [1800, 12]]
     }
     assert!(Balances::of(&simulation).heat_error() < 1e-9);
 }
+
+#[test]
+fn loads_in_a_loop_without_pipes_end_at_their_coldest_return() {
+    // Two loads cool a few milligrams that pass them again and again within the first step, far beyond
+    // freezing if nothing held them: the one that may cool further, to 10 degC, decides; the other, which
+    // must not cool below 20 degC, lets the colder water pass.
+    let load = |id: &str, coldest: f64| {
+        format!(
+            "[[edge]]\nid = \"{id}\"\nkind = \"flow_source\"\nfrom = \"r\"\nto = \"s\"\nm_flow_kg_s = 0\n\
+             [[unit]]\nid = \"{id}.unit\"\nport = \"{id}\"\nkind = \"heat_load\"\nload_kw = 12.54\n\
+             temperature_difference_k = 30\ncoldest_return_degc = {coldest}\n"
+        )
+    };
+    let text = format!(
+        "format = 1\n[run]\ninitial_degc = 60\n[[node]]\nid = \"s\"\n[[node]]\nid = \"r\"\n\
+         [pressure_reference]\nnode = \"r\"\n[[edge]]\nid = \"back\"\nkind = \"resistance\"\nfrom = \"r\"\n\
+         to = \"s\"\ndp_nominal_bar = 0.1\nm_flow_nominal_kg_s = 0.2\n{}{}",
+        load("a", 20.0),
+        load("b", 10.0)
+    );
+    let mut simulation = simulation(&text);
+    let step = Time::from_s(60.0).unwrap();
+    simulation.advance_to(step, step).unwrap();
+    let get = |name: &str| simulation.get(simulation.channel(name).unwrap());
+    for name in ["s.t_k", "a.unit.t_out_k", "b.unit.t_out_k"] {
+        assert!((get(name) - 283.15).abs() < 1e-2, "{name} {}", get(name) - 273.15);
+    }
+    assert!(get("a.unit.q_flow_w").abs() < 1e-6, "{}", get("a.unit.q_flow_w"));
+    assert!(Balances::of(&simulation).heat_error() < 1e-9);
+}

@@ -77,6 +77,8 @@ fn volume_shares(throughput_kg: f64, content_kg: f64) -> (f64, f64) {
 /// Work space of the thermal sweep; holds no state of the network.
 pub struct Transport {
     relation: Vec<Relation>,
+    /// The same in loops that are solved together, where coldest temperatures are held.
+    in_loops: Vec<Relation>,
     /// Edge of each port and port of each edge.
     port_of_edge: Vec<u32>,
     /// Edges at each node: `incident[first[n]..first[n + 1]]`.
@@ -136,6 +138,7 @@ impl Transport {
         }
         Ok(Self {
             relation: vec![Relation::PASS; edges],
+            in_loops: vec![Relation::PASS; edges],
             port_of_edge,
             first,
             incident,

@@ -9,6 +9,8 @@ use anergy_core::error::FactorError;
 const LEAST_RELAXATION: f64 = 1e-12;
 /// Rounds in which coldest temperatures are held in a loop; one cooled edge may warm the next.
 const MOST_HELD: usize = 8;
+/// Water this much colder than a coldest temperature passes as it is, K.
+const COLDEST_ROUNDING_K: f64 = 1e-6;
 
 impl Transport {
     /// Water and heat that enter the nodes: from all edges, and the heat that boundaries bring. A volume that
@@ -73,6 +75,7 @@ impl Transport {
             }
             return Ok(());
         }
+        self.in_loops.copy_from_slice(&self.relation);
         self.solve_loops(network, state, dt_s)?;
         for _ in 0..MOST_HELD {
             if !self.hold_coldest(network, state) {
@@ -149,21 +152,28 @@ impl Transport {
         t_k
     }
 
-    /// Loops are linear: what would be cooled too far in them gets its coldest temperature. False when
-    /// nothing was.
+    /// Loops are linear: what would be cooled too far at the temperatures just found gets its coldest
+    /// temperature there, all else its own relation. False when nothing changed by that.
     fn hold_coldest(&mut self, network: &Network, state: &NetworkState) -> bool {
-        let mut held = false;
-        for i in 0..self.relation.len() {
-            let (m, Relation { constant_k, coldest_k, .. }) =
-                (state.m_flow_kg_s[i], self.relation[i]);
-            let t_in_k = self.t_mean_k[network.edges[i].upstream(m).index()];
-            if m != 0.0 && constant_k + t_in_k < coldest_k {
-                self.relation[i] =
-                    if t_in_k < coldest_k { Relation::PASS } else { Relation::constant(coldest_k) };
-                held = true;
+        let mut changed = false;
+        for (i, own) in self.relation.iter().enumerate() {
+            let m = state.m_flow_kg_s[i];
+            if m == 0.0 || own.coldest_k == f64::NEG_INFINITY {
+                continue;
             }
+            let t_in_k = self.t_mean_k[network.edges[i].upstream(m).index()];
+            let held = if own.constant_k + t_in_k >= own.coldest_k {
+                *own
+            } else if t_in_k < own.coldest_k - COLDEST_ROUNDING_K && self.in_loops[i] != *own {
+                Relation::PASS
+            } else {
+                // At first also where colder water arrives: that may be what it cooled too far itself.
+                Relation::constant(own.coldest_k)
+            };
+            changed |= self.in_loops[i] != held;
+            self.in_loops[i] = held;
         }
-        held
+        changed
     }
 
     /// Orders the nodes so that each comes after those it depends on; kept while nothing turns.
@@ -248,7 +258,7 @@ impl Transport {
             let (from, to) = (edge.upstream(m).index(), edge.downstream(m).index());
             let weight =
                 (1.0 - self.kept_share(network, to, dt_s)) * m.abs() / self.inflow_kg_s[to];
-            let relation = self.relation[i];
+            let relation = self.in_loops[i];
             self.t_mean_k[to] += weight * relation.constant_k;
             self.add_entry(to, from, -weight * relation.of_inlet);
             if let Some(partner) = edge.partner {
