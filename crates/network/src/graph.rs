@@ -72,6 +72,11 @@ impl Edge {
         }
     }
 
+    /// Change of the pressure loss with the position at a given flow, Pa per unit of the position.
+    pub fn loss_by_position(&self, m_flow_kg_s: f64, state: &EdgeState) -> f64 {
+        self.loss_factor * self.element.loss_by_position(m_flow_kg_s, state)
+    }
+
     /// The node at the end the water leaves through.
     #[inline]
     pub fn downstream(&self, m_flow_kg_s: f64) -> NodeId {

@@ -17,6 +17,7 @@ mod assemble;
 mod diagnosis;
 mod error;
 mod ideal;
+pub mod linearize;
 mod position;
 mod prescribed;
 mod reconsider;
@@ -237,11 +238,7 @@ impl HydraulicSolver {
     }
 
     /// Law of every edge at the flows of the state; those that are known are kept.
-    fn evaluate(
-        &mut self,
-        network: &Network,
-        state: &mut NetworkState,
-    ) -> Result<(), HydraulicError> {
+    fn evaluate(&mut self, network: &Network, state: &NetworkState) -> Result<(), HydraulicError> {
         let known = std::mem::replace(&mut self.known, false);
         for (i, edge) in network.edges.iter().enumerate() {
             let m = state.m_flow_kg_s[i];

@@ -20,3 +20,5 @@ pub mod state;
 pub mod transport;
 pub mod two_port;
 pub mod well_posed;
+
+pub use hydraulics::linearize;

@@ -193,6 +193,13 @@ pub trait TwoPort {
     /// What the edge imposes at this flow (positive from a to b).
     fn characteristic(&self, m_flow_kg_s: f64, state: &EdgeState) -> Characteristic;
 
+    /// Change of the pressure loss with the position at a given flow, Pa per unit of the position; zero
+    /// where the position is itself the flow or the pressure difference, and where there is none. At a
+    /// kink that of one side.
+    fn loss_by_position(&self, _m_flow_kg_s: f64, _state: &EdgeState) -> f64 {
+        0.0
+    }
+
     /// A typical flow, kg/s: start value of a cold solve.
     fn m_flow_nominal_kg_s(&self) -> f64;
 

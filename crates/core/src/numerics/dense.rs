@@ -7,15 +7,22 @@
 #[derive(Debug, Clone, Default)]
 pub struct DenseSystem {
     unknowns: usize,
-    /// Row by row.
+    /// Row by row; after the factorisation the factors.
     matrix: Vec<f64>,
     scale: Vec<f64>,
+    /// Row that each column took its pivot from.
+    pivot: Vec<usize>,
 }
 
 impl DenseSystem {
     /// Room for `most` unknowns.
     pub fn with_room(most: usize) -> Self {
-        Self { unknowns: 0, matrix: vec![0.0; most * most], scale: vec![0.0; most] }
+        Self {
+            unknowns: 0,
+            matrix: vec![0.0; most * most],
+            scale: vec![0.0; most],
+            pivot: vec![0; most],
+        }
     }
 
     /// Begins a system of `unknowns` with a matrix of zeros; allocates beyond the room only.
@@ -25,6 +32,8 @@ impl DenseSystem {
         self.matrix.resize(unknowns * unknowns, 0.0);
         self.scale.clear();
         self.scale.resize(unknowns, 0.0);
+        self.pivot.clear();
+        self.pivot.resize(unknowns, 0);
     }
 
     /// Sets an entry.
@@ -33,10 +42,16 @@ impl DenseSystem {
         self.matrix[row * self.unknowns + column] = value;
     }
 
-    /// Replaces the right-hand side by the solution and destroys the matrix. False, with a right-hand side
-    /// without meaning, where the matrix is singular or not finite.
+    /// Replaces the right-hand side by the solution and the matrix by its factors. False, with a right-hand
+    /// side without meaning, where the matrix is singular or not finite.
     #[must_use]
     pub fn solve(&mut self, rhs: &mut [f64]) -> bool {
+        self.factor() && self.solve_factored(rhs)
+    }
+
+    /// Replaces the matrix by its factors; false where it is singular or not finite.
+    #[must_use]
+    pub fn factor(&mut self) -> bool {
         let n = self.unknowns;
         for (scale, row) in self.scale.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
             *scale = row.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
@@ -53,24 +68,43 @@ impl DenseSystem {
             if !found.is_finite() || found <= f64::EPSILON {
                 return false;
             }
+            self.pivot[column] = pivot;
             if pivot != column {
                 let (above, below) = self.matrix.split_at_mut(pivot * n);
                 above[column * n..(column + 1) * n].swap_with_slice(&mut below[..n]);
                 self.scale.swap(pivot, column);
-                rhs.swap(pivot, column);
             }
             let (above, below) = self.matrix.split_at_mut((column + 1) * n);
             let pivot_row = &above[column * n..];
-            let pivot_rhs = rhs[column];
-            for (i, row) in below.chunks_exact_mut(n).enumerate() {
+            for row in below.chunks_exact_mut(n) {
                 let factor = row[column] / pivot_row[column];
+                row[column] = factor;
                 if factor == 0.0 {
                     continue;
                 }
-                for (entry, pivot) in row[column..].iter_mut().zip(&pivot_row[column..]) {
+                for (entry, pivot) in row[column + 1..].iter_mut().zip(&pivot_row[column + 1..]) {
                     *entry -= factor * pivot;
                 }
-                rhs[column + 1 + i] -= factor * pivot_rhs;
+            }
+        }
+        true
+    }
+
+    /// Solves with the factors: right-hand side in, solution out; false where it is not finite.
+    #[must_use]
+    pub fn solve_factored(&self, rhs: &mut [f64]) -> bool {
+        let n = self.unknowns;
+        // The rows were exchanged as a whole, with the factors they had so far.
+        for column in 0..n {
+            rhs.swap(self.pivot[column], column);
+        }
+        for column in 0..n {
+            let pivot_rhs = rhs[column];
+            for row in column + 1..n {
+                let factor = self.matrix[row * n + column];
+                if factor != 0.0 {
+                    rhs[row] -= factor * pivot_rhs;
+                }
             }
         }
         for row in (0..n).rev() {
@@ -96,7 +130,13 @@ mod tests {
             }
         }
         let mut rhs = rhs.to_vec();
-        system.solve(&mut rhs).then_some(rhs)
+        let (mut again, solved) = (rhs.clone(), system.solve(&mut rhs));
+        if solved {
+            // The factors stay.
+            assert!(system.solve_factored(&mut again));
+            assert_eq!(again, rhs);
+        }
+        solved.then_some(rhs)
     }
 
     #[test]

@@ -85,14 +85,31 @@ impl FlowLimiterParams {
     }
 }
 
-impl TwoPort for FlowLimiter {
-    fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
-        let set = state.position.max(0.0);
+impl FlowLimiter {
+    /// The law of the open valve, and that at the set flow.
+    fn branches(&self, m: f64, set: f64) -> (Linear, Linear) {
         let slope = BAND_PA / (BAND * set.max(LEAST_FLOW * self.m_flow_nominal_kg_s));
         // The rounding begins beyond the set flow, so that a set flow of zero leaves zero alone.
         let limit = Linear::new(slope * (m - set) - 2.0 * ROUNDING_PA, slope);
-        let open = quadratic(m, self.open, self.m_turbulent_kg_s);
+        (quadratic(m, self.open, self.m_turbulent_kg_s), limit)
+    }
+}
+
+impl TwoPort for FlowLimiter {
+    fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
+        let (open, limit) = self.branches(m, state.position.max(0.0));
         Characteristic::PressureLoss(smooth_max(open, limit, ROUNDING_PA))
+    }
+
+    fn loss_by_position(&self, m: f64, state: &EdgeState) -> f64 {
+        let set = state.position.max(0.0);
+        let (open, limit) = self.branches(m, set);
+        // Above the least flow the slope falls with the set flow as well.
+        let least = LEAST_FLOW * self.m_flow_nominal_kg_s;
+        let by_set = -limit.slope * if set > least { m / set } else { 1.0 };
+        // The weights of the rounding are those of the slopes.
+        let (open, limit) = (Linear::new(open.value, 0.0), Linear::new(limit.value, by_set));
+        smooth_max(open, limit, ROUNDING_PA).slope
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {

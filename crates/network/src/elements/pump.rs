@@ -346,6 +346,11 @@ impl TwoPort for Pump {
         Characteristic::PressureLoss(self.loss(m, state))
     }
 
+    fn loss_by_position(&self, m: f64, state: &EdgeState) -> f64 {
+        let (position, density) = (state.position, state.density_kg_m3);
+        self.mode.loss_by_position(&self.curve, m, position, density, self.speed_max)
+    }
+
     fn m_flow_nominal_kg_s(&self) -> f64 {
         0.5 * self.curve.m_free_kg_s
     }

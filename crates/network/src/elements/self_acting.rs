@@ -78,6 +78,10 @@ impl TwoPort for SelfActing {
         self.valve.characteristic(m, state)
     }
 
+    fn loss_by_position(&self, m: f64, state: &EdgeState) -> f64 {
+        self.valve.loss_by_position(m, state)
+    }
+
     fn m_flow_nominal_kg_s(&self) -> f64 {
         self.valve.m_flow_nominal_kg_s()
     }

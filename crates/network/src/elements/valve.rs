@@ -305,6 +305,15 @@ impl TwoPort for Valve {
         Characteristic::PressureLoss(quadratic(m, 1.0 / (k * k), self.m_turbulent_kg_s))
     }
 
+    fn loss_by_position(&self, m: f64, state: &EdgeState) -> f64 {
+        // dp = (m/(k phi))^2
+        let share = -2.0 * self.curve.phi_slope(state.position) / self.curve.phi(state.position);
+        match self.characteristic(m, state) {
+            Characteristic::PressureLoss(loss) => share * loss.value,
+            _ => 0.0,
+        }
+    }
+
     fn m_flow_nominal_kg_s(&self) -> f64 {
         self.m_flow_nominal_kg_s
     }

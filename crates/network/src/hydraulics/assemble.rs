@@ -1,5 +1,9 @@
 //! The nodal system: which node is which unknown, the matrix, the right-hand side, the residuals.
 
+mod linear;
+
+pub(super) use linear::Disturbance;
+
 use super::ideal::{IdealLink, ideal_forest};
 use crate::graph::{Network, NodeKind, UnionFind};
 use crate::hydraulics::{HydraulicError, Kind, Laws};
@@ -268,11 +272,7 @@ impl NodalSystem {
             };
             balance(&mut self.increment, slots, m + step[i]);
         }
-        // An island without fixed pressure keeps its level: no flow passes this conductance.
-        for &root in &self.floating {
-            let slot = self.to_fixed[self.unknown_of_node[root as usize] as usize];
-            values[slot as usize] += largest_conductance.max(1e-12);
-        }
+        self.tie_floating(largest_conductance);
         self.conductances.factor()?;
         self.conductances.solve_in_place(&mut self.increment);
         self.largest_p_pa = 0.0;
@@ -289,25 +289,6 @@ impl NodalSystem {
             step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / laws.slope[i];
         }
         Ok(())
-    }
-
-    /// Response of the pressures to 1 Pa of head in an edge, at the last factorisation.
-    pub(super) fn respond(&mut self, edge: usize, laws: &Laws) {
-        self.increment.fill(0.0);
-        balance(&mut self.increment, &self.slots[edge], 1.0 / laws.slope[edge]);
-        self.conductances.solve_in_place(&mut self.increment);
-    }
-
-    /// Response of the pressure of a node, Pa/Pa.
-    pub(super) fn response_pa(&self, node: usize) -> f64 {
-        let unknown = self.unknown_of_node[node];
-        if unknown == NONE { 0.0 } else { self.increment[unknown as usize] }
-    }
-
-    /// Response of the pressure difference of an edge, Pa/Pa.
-    pub(super) fn response_dp_pa(&self, edge: usize) -> f64 {
-        let slots = &self.slots[edge];
-        self.response_pa(slots.node_a as usize) - self.response_pa(slots.node_b as usize)
     }
 
     /// Whether an end of an edge lies in a part without a pressure level.

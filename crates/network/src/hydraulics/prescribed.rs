@@ -170,20 +170,24 @@ impl HydraulicSolver {
         Err(HydraulicError::Undecided { edge: network.prescriptions[culprit].free })
     }
 
-    /// What stands for the law of the free edge of a prescription.
+    /// Puts what stands for the law of the free edge of a prescription in its place.
     fn take_stand(&mut self, network: &Network, state: &mut NetworkState, k: usize) {
         let edge = network.prescriptions[k].free.index();
         let (min, max) = limits(network, edge);
+        match state.prescribed[k].hold {
+            Hold::AtMin => state.place_actuator(edge, min),
+            Hold::AtMax => state.place_actuator(edge, max),
+            Hold::Held => {}
+        }
+        self.stand[edge] = self.stand_of(network, state, k);
+    }
+
+    /// What stands for the law of the free edge of a prescription.
+    pub(super) fn stand_of(&self, network: &Network, state: &NetworkState, k: usize) -> Stand {
+        let edge = network.prescriptions[k].free.index();
         let prescribed = state.prescribed[k];
-        self.stand[edge] = match (prescribed.hold, self.carried[k]) {
-            (Hold::AtMin, _) => {
-                state.place_actuator(edge, min);
-                Stand::Own
-            }
-            (Hold::AtMax, _) => {
-                state.place_actuator(edge, max);
-                Stand::Own
-            }
+        match (prescribed.hold, self.carried[k]) {
+            (Hold::AtMin | Hold::AtMax, _) => Stand::Own,
             (Hold::Held, Some(sign)) => Stand::Flow(sign * prescribed.value),
             (Hold::Held, None) => {
                 let m = state.m_flow_kg_s[edge];
@@ -197,7 +201,7 @@ impl HydraulicSolver {
                     (_, None) => Stand::Head { slope: SLOPE_RANGE.1, head: 0.0 },
                 }
             }
-        };
+        }
     }
 
     /// Newton on the heads of the free edges; one hydraulic solve where there is none.

@@ -169,6 +169,27 @@ impl HeadCurve {
         affine.scaled(weight) + as_quadratic.scaled(1.0 - weight)
     }
 
+    /// Change of `p_a - p_b` with the relative speed at a given flow, Pa.
+    pub(super) fn loss_by_speed(&self, m: f64, speed: f64, density: f64) -> f64 {
+        let square = speed * speed;
+        let as_quadratic = -2.0 * speed * self.head_max_pa;
+        if self.form == Form::Quadratic {
+            return as_quadratic;
+        }
+        let reference_speed = speed.max(BLEND_SPEED);
+        let v = m / density / reference_speed;
+        let head = self.head(v, density);
+        if speed >= BLEND_SPEED {
+            // -u^2 H(V/u)
+            return -2.0 * speed * head.value + speed * v * head.slope;
+        }
+        let x = speed / BLEND_SPEED;
+        let (weight, weight_slope) = (smoothstep(x), 6.0 * x * (1.0 - x) / BLEND_SPEED);
+        let at_rest = quadratic(m, self.curvature, self.m_turbulent_kg_s).value;
+        let between = -square * head.value - (at_rest - square * self.head_max_pa);
+        weight_slope * between - 2.0 * speed * weight * head.value + (1.0 - weight) * as_quadratic
+    }
+
     /// Flow at which the pump has a head at a speed, kg/s: at least a hundredth of the free flow.
     pub(super) fn flow_at(&self, head_pa: f64, speed: f64, density: f64) -> f64 {
         let (mut low, mut high) = (0.0, 2.0 * speed * self.m_free_kg_s);

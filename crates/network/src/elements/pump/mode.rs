@@ -66,20 +66,12 @@ impl PumpMode {
         density: f64,
         speed_max: f64,
     ) -> Linear {
-        let m_nominal = 0.5 * curve.m_free_kg_s;
+        if self == Self::Speed {
+            return curve.loss(m, position, density);
+        }
+        let (held, _, whole) = self.held(curve, m, position, speed_max);
         let head_max_pa = speed_max * speed_max * curve.head_max_pa;
-        let (held, share) = match self {
-            Self::Speed => return curve.loss(m, position, density),
-            Self::Flow => {
-                let slope = head_max_pa / (FLOW_BAND * position.max(LEAST_FLOW * m_nominal));
-                (Linear::new(slope * (m - position), slope), position / m_nominal)
-            }
-            Self::Head | Self::ProportionalHead => {
-                let slope = DROOP * position.max(LEAST_HEAD * head_max_pa) / m_nominal;
-                (Linear::new(slope * m - position, slope), position / head_max_pa)
-            }
-        };
-        let available = (share / SWITCHED_OFF).clamp(0.0, 1.0);
+        let available = (position / whole / SWITCHED_OFF).clamp(0.0, 1.0);
         let rest = curve.loss(m, 0.0, density);
         if available == 0.0 {
             return rest;
@@ -87,6 +79,55 @@ impl PumpMode {
         let rounding = ROUNDING * available * available * head_max_pa;
         let full = curve.loss(m, available * speed_max, density);
         smooth_max(full, smooth_min(held, rest, rounding), rounding)
+    }
+
+    /// The line that holds the set value, its change with that value, and the nominal flow or the head at
+    /// zero flow.
+    fn held(self, curve: &HeadCurve, m: f64, position: f64, speed_max: f64) -> (Linear, f64, f64) {
+        let m_nominal = 0.5 * curve.m_free_kg_s;
+        let head_max_pa = speed_max * speed_max * curve.head_max_pa;
+        if self == Self::Flow {
+            let least = LEAST_FLOW * m_nominal;
+            let slope = head_max_pa / (FLOW_BAND * position.max(least));
+            // Above the least flow the slope falls with the set flow as well.
+            let by_position = -slope * if position > least { m / position } else { 1.0 };
+            (Linear::new(slope * (m - position), slope), by_position, m_nominal)
+        } else {
+            let least = LEAST_HEAD * head_max_pa;
+            let slope = DROOP * position.max(least) / m_nominal;
+            let by_position = if position > least { DROOP * m / m_nominal - 1.0 } else { -1.0 };
+            (Linear::new(slope * m - position, slope), by_position, head_max_pa)
+        }
+    }
+
+    /// Change of `p_a - p_b` with the position at a given flow, Pa per unit of the position.
+    pub(super) fn loss_by_position(
+        self,
+        curve: &HeadCurve,
+        m: f64,
+        position: f64,
+        density: f64,
+        speed_max: f64,
+    ) -> f64 {
+        if self == Self::Speed {
+            return curve.loss_by_speed(m, position, density);
+        }
+        let (held, by_position, whole) = self.held(curve, m, position, speed_max);
+        if position < SWITCHED_OFF * whole {
+            // Being switched off, which is no operating point: the quotient of differences will do.
+            let step = 1e-3 * SWITCHED_OFF * whole;
+            let (low, high) = ((position - step).max(0.0), position + step);
+            let loss = |at: f64| self.loss(curve, m, at, density, speed_max).value;
+            return (loss(high) - loss(low)) / (high - low);
+        }
+        let head_max_pa = speed_max * speed_max * curve.head_max_pa;
+        let still = |law: Linear| Linear::new(law.value, 0.0);
+        let rest = still(curve.loss(m, 0.0, density));
+        let full = still(curve.loss(m, speed_max, density));
+        let held = Linear::new(held.value, by_position);
+        let rounding = ROUNDING * head_max_pa;
+        // The weights of the rounding are those of the slopes.
+        smooth_max(full, smooth_min(held, rest, rounding), rounding).slope
     }
 }
 

@@ -119,6 +119,29 @@ impl Curve {
         }
     }
 
+    /// Slope of the relative flow coefficient over the opening.
+    pub(super) fn phi_slope(&self, y: f64) -> f64 {
+        let l = self.leakage;
+        match &self.shape {
+            Shape::Linear => 1.0 - l,
+            Shape::EqualPercentage(curve) => {
+                if y <= curve.blend_from.0 {
+                    curve.foot_slope
+                } else if y >= curve.blend_to.0 {
+                    self.phi(y) * curve.ln_rangeability
+                } else {
+                    cubic_hermite(y, curve.blend_from, curve.blend_to).slope
+                }
+            }
+            Shape::QuickOpening { exponent, scale } => {
+                let square = y * y + FOOT * FOOT;
+                let by_y = 1.0 + 2.0 * exponent * y * y / square;
+                (1.0 - l) * scale * square.powf(*exponent) * by_y
+            }
+            Shape::Table(points) => (1.0 - l) * points.at(y).slope,
+        }
+    }
+
     /// Opening with a relative flow coefficient.
     pub(super) fn opening(&self, phi: f64) -> f64 {
         let l = self.leakage;
