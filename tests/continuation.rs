@@ -30,8 +30,8 @@ fn controlled() -> Model {
     });
     model.controllers.push(ControllerSpec {
         id: "flow".into(),
-        measures: "sf1.feed_in_pump.m_flow_kg_s".into(),
-        acts_on: "sf1.feed_in_pump.speed".into(),
+        measures: vec!["sf1.feed_in_pump.m_flow_kg_s".into()],
+        acts_on: vec!["sf1.feed_in_pump.speed".into()],
         params: ControllerParams::deserialize("pi", params).unwrap().unwrap(),
         place: Place::default(),
     });
@@ -274,7 +274,7 @@ fn a_controller_is_settled_in_the_steady_solve() {
     assert!((flow(&controlled()) - 0.03).abs() < 1e-8);
     // A set point beyond the pump leaves it at full speed: 2.050 l/min (SC-01).
     let mut impossible = controlled();
-    let ControllerParams::Pi(pi) = &mut impossible.controllers[0].params;
+    let ControllerParams::Pi(pi) = &mut impossible.controllers[0].params else { panic!() };
     pi.set_point = 0.2;
     assert!((flow(&impossible) * 60.0 - 2.050).abs() < 0.01, "{}", flow(&impossible) * 60.0);
 }

@@ -1,4 +1,5 @@
-//! Local controllers: measured signals in, set points of actuators out.
+//! Local controllers: measured signals in, set points of actuators out; sensors in between.
 
 pub mod controller;
 pub mod controllers;
+pub mod sensor;

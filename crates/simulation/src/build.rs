@@ -1,6 +1,7 @@
 //! From names to ids: a model becomes a plan, or all its problems are reported.
 
 mod commands;
+mod control;
 mod losses;
 mod meters;
 mod network;
@@ -15,6 +16,7 @@ pub(crate) use network::pipe_temperatures;
 use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
+use crate::model_file::InitialState;
 use crate::plan::{Plan, PlannedUnit};
 use crate::state::{Reading, State};
 use crate::wording::refused;
@@ -27,7 +29,7 @@ use anergy_network::graph::Network;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::{Station, StationState};
 use network::pipes;
-use signals::{Writer, free_signal};
+use signals::Writer;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -91,6 +93,7 @@ impl Builder<'_> {
             .map(|edge| ("edge", &edge.id, &edge.place))
             .chain(model.units.iter().map(|unit| ("unit", &unit.id, &unit.place)))
             .chain(model.interfaces.iter().map(|i| ("interface", &i.id, &i.place)))
+            .chain(model.sensors.iter().map(|s| ("sensor", &s.entry.id, &s.place)))
             .chain(model.controllers.iter().map(|c| ("controller", &c.id, &c.place)))
             .chain(model.worst_points.iter().map(|p| ("worst point", &p.entry.id, &p.place)))
             .chain(model.prescriptions.iter().map(|p| ("prescription", &p.id, &p.place)));
@@ -164,17 +167,7 @@ impl Builder<'_> {
             // What is free follows no command.
             commands[prescription.free.index()] = None;
         }
-        let controller_signals: Vec<SignalId> = self
-            .model
-            .controllers
-            .iter()
-            .map(|spec| {
-                // A controller that cannot be built is reported later.
-                let set_point = spec.params.build(&()).map_or(0.0, |built| built.set_point());
-                let signal = free_signal(&format!("{}.set_point", spec.id), "", set_point);
-                self.add_signal(&mut signals, signal, &spec.place)
-            })
-            .collect();
+        let set_points = self.set_points(&mut signals);
         // Without all edges there are not all signals: what is missing has been reported.
         let drivers = if whole { self.drivers(&signals, &mut writers) } else { Vec::new() };
         let steps = self.run_times();
@@ -199,6 +192,7 @@ impl Builder<'_> {
             station_of_valve: interlocks(model.edges.len(), &stations),
             stations,
             units,
+            sensors: Vec::new(),
             controllers: Vec::new(),
             worst_points,
             prescriptions,
@@ -227,11 +221,13 @@ impl Builder<'_> {
             step: steps.0,
             record: steps.1,
             until: steps.2,
+            starts_settled: model.run.initial == InitialState::Steady,
             soil_step,
             network,
         };
         (plan.channels, plan.sources) = channels::channels(&plan);
-        self.controllers(&mut plan, &controller_signals, &mut writers);
+        self.sensors(&mut plan);
+        self.controllers(&mut plan, &set_points, &mut writers);
         self.targets(&mut plan);
         Some(plan)
     }
@@ -302,6 +298,7 @@ impl Builder<'_> {
             vessels: Vec::new(),
             crossed: Vec::new(),
             missed: Vec::new(),
+            sensors: Vec::new(),
             controller_states: Vec::new(),
             next_tick: Vec::new(),
             last_tick: Vec::new(),

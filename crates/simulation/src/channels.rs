@@ -66,6 +66,8 @@ pub enum Source {
     WorstPoint(usize),
     /// An output of a unit.
     UnitOutput(usize),
+    /// Reading of a sensor.
+    Sensor(usize),
     /// An input signal.
     Signal(SignalId),
     /// Electric power of all pumps, W.
@@ -181,6 +183,19 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
     }
     (list.channels, list.sources)
+}
+
+/// Unit of a difference of temperatures, which counts from nothing.
+pub(crate) const DIFFERENCE_K: &str = "delta K";
+
+/// Adds the readings of the sensors.
+pub(crate) fn add_sensors(plan: &mut Plan) {
+    let channels = std::mem::take(&mut plan.channels);
+    let mut list = List { channels, sources: std::mem::take(&mut plan.sources) };
+    for (i, sensor) in plan.sensors.iter().enumerate() {
+        list.add(ChannelGroup::Control, &sensor.name, "value", &sensor.unit, Source::Sensor(i));
+    }
+    (plan.channels, plan.sources) = (list.channels, list.sources);
 }
 
 struct List {
@@ -303,6 +318,7 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
             pairs.map(|&(a, b)| network.p_pa[a] - network.p_pa[b]).fold(f64::INFINITY, f64::min)
         }
         Source::UnitOutput(i) => state.unit_outputs[i],
+        Source::Sensor(i) => state.sensors[i].value(),
         Source::Signal(id) => state.signals[id.index()],
         Source::TotalElectric => plan.total_electric_w(network),
         Source::TotalUnits => plan.total_units_w(network),

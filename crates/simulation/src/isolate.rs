@@ -138,12 +138,25 @@ impl Model {
         });
         let kept: HashSet<String> = kept.into_iter().chain(points).chain(shared).collect();
         let component = |name: &str| name.rsplit_once('.').is_some_and(|(c, _)| kept.contains(c));
-        model.controllers.retain(|c| component(&c.measures) && component(&c.acts_on));
+        model.sensors.retain(|sensor| {
+            component(&sensor.entry.measures) && sensor.entry.minus.as_deref().is_none_or(component)
+        });
+        let sensors: HashSet<String> =
+            model.sensors.iter().map(|sensor| format!("{}.value", sensor.entry.id)).collect();
+        model
+            .controllers
+            .retain(|c| c.named().all(|(_, name)| component(name) || sensors.contains(name)));
         model.prescriptions.retain(|p| component(&p.entry.quantity) && component(&p.entry.free));
         let set_points: HashSet<String> = model
             .controllers
             .iter()
-            .map(|c| format!("{}.set_point", c.id))
+            .flat_map(|c| {
+                let points = c.params.build(&()).map(|c| c.set_points()).unwrap_or_default();
+                points
+                    .into_iter()
+                    .map(|point| format!("{}.{}", c.id, point.name))
+                    .collect::<Vec<_>>()
+            })
             .chain(model.prescriptions.iter().map(|p| format!("{}.value", p.id)))
             .collect();
         model

@@ -10,7 +10,8 @@ use crate::model_file::{
     RunEntry, WorstPointEntry,
 };
 use crate::table::Tables;
-use anergy_control::controllers::ControllerParams;
+use anergy_control::controllers::{ControllerParams, ports};
+use anergy_control::sensor::SensorEntry;
 use anergy_core::medium::Medium;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
@@ -147,12 +148,31 @@ impl InterfaceSpec {
 pub struct ControllerSpec {
     /// Name.
     pub id: String,
-    /// Channel it measures.
-    pub measures: String,
-    /// Signal it drives.
-    pub acts_on: String,
+    /// Channels it measures, in the order of its ports.
+    pub measures: Vec<String>,
+    /// Signals it drives, in the order of its ports.
+    pub acts_on: Vec<String>,
     /// The controller.
     pub params: ControllerParams,
+    /// Where it stands.
+    pub place: Place,
+}
+
+impl ControllerSpec {
+    /// Field and name of every channel and signal.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let ports = ports(self.params.kind());
+        let fields = ports.measures.iter().chain(ports.acts_on);
+        let names = self.measures.iter().chain(&self.acts_on);
+        fields.copied().zip(names.map(String::as_str))
+    }
+}
+
+/// A sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SensorSpec {
+    /// Its fields.
+    pub entry: SensorEntry,
     /// Where it stands.
     pub place: Place,
 }
@@ -238,6 +258,8 @@ pub struct Model {
     pub units: Vec<UnitSpec>,
     /// Hydraulic interfaces.
     pub interfaces: Vec<InterfaceSpec>,
+    /// Sensors.
+    pub sensors: Vec<SensorSpec>,
     /// Controllers.
     pub controllers: Vec<ControllerSpec>,
     /// Worst points.

@@ -75,6 +75,27 @@ pub struct RunEntry {
     /// Temperature of all water at the start, K.
     #[serde(default = "twenty_degc")]
     pub initial_k: f64,
+    /// What the run starts from.
+    #[serde(default, skip_serializing_if = "InitialState::is_given")]
+    pub initial: InitialState,
+}
+
+/// What a run starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum InitialState {
+    /// The initial temperatures, positions and outputs of the entries.
+    #[default]
+    Given,
+    /// The steady state of the inputs at t = 0, controllers at rest in it.
+    Steady,
+}
+
+impl InitialState {
+    #[allow(clippy::trivially_copy_pass_by_ref)]
+    fn is_given(&self) -> bool {
+        *self == Self::Given
+    }
 }
 
 fn one_hour() -> Duration {

@@ -76,16 +76,18 @@ impl Model {
                 .collect(),
         );
         section(
+            "sensor",
+            self.sensors.iter().map(|sensor| without_nulls(json!(sensor.entry))).collect(),
+        );
+        section(
             "controller",
             self.controllers
                 .iter()
                 .map(|controller| {
-                    let head = json!({
-                        "id": controller.id,
-                        "kind": controller.params.kind(),
-                        "measures": controller.measures,
-                        "acts_on": controller.acts_on,
-                    });
+                    let mut head = json!({ "id": controller.id, "kind": controller.params.kind() });
+                    for (field, name) in controller.named() {
+                        head[field] = json!(name);
+                    }
                     joined(head, controller.params.to_value())
                 })
                 .collect(),
@@ -167,6 +169,11 @@ impl Model {
             let params = &controller.params;
             let schema = anergy_control::controllers::ControllerParams::schema(params.kind());
             collect(&mut defaults, &controller.id, &params.to_value(), schema, &controller.place);
+        }
+        for sensor in &self.sensors {
+            let schema = Some(schemars::schema_for!(anergy_control::sensor::SensorEntry));
+            let values = json!(sensor.entry);
+            collect(&mut defaults, &sensor.entry.id, &values, schema, &sensor.place);
         }
         for effect in &self.effects {
             let schema = crate::effects::EffectParams::schema(effect.params.kind());

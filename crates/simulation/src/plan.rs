@@ -4,6 +4,7 @@ use crate::channels::Source;
 use crate::drivers::Driver;
 use crate::state::State;
 use anergy_control::controllers::LocalController;
+use anergy_control::sensor::Sensor;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::recorder::{Channel, NetworkMap};
@@ -36,14 +37,30 @@ pub(crate) struct PlannedUnit {
 pub(crate) struct PlannedController {
     pub name: String,
     pub controller: LocalController,
-    pub measures: Source,
-    pub measured_name: String,
-    /// From where the measured value counts: 0 degC for a temperature.
+    pub measures: Vec<Source>,
+    pub measured_names: Vec<String>,
+    /// From where the first measured value counts: 0 degC for a temperature.
     pub zero: f64,
-    pub set_point: SignalId,
-    pub acts_on: SignalId,
+    /// Signals of its set points.
+    pub set_points: Range<usize>,
+    pub acts_on: Vec<SignalId>,
+    /// Smallest and largest value of those signals.
+    pub limits: Vec<(f64, f64)>,
+    /// 0 is every step.
     pub interval: Time,
     pub state: Range<usize>,
+}
+
+/// A sensor and what it measures.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedSensor {
+    pub name: String,
+    /// Unit of its channel.
+    pub unit: String,
+    pub sensor: Sensor,
+    pub measures: Source,
+    /// What is subtracted.
+    pub minus: Option<Source>,
 }
 
 /// Pairs of nodes of which the smallest pressure difference is of interest.
@@ -133,6 +150,7 @@ pub struct Plan {
     /// Station of each edge that is an extraction valve beside a feed-in pump.
     pub(crate) station_of_valve: Vec<Option<usize>>,
     pub(crate) units: Vec<PlannedUnit>,
+    pub(crate) sensors: Vec<PlannedSensor>,
     pub(crate) controllers: Vec<PlannedController>,
     pub(crate) worst_points: Vec<WorstPoint>,
     pub(crate) prescriptions: Vec<PlannedPrescription>,
@@ -166,6 +184,8 @@ pub struct Plan {
     pub(crate) step: Time,
     pub(crate) record: Time,
     pub(crate) until: Time,
+    /// Whether a run starts from the steady state.
+    pub(crate) starts_settled: bool,
     /// The longest step that the soil around the pipes takes.
     pub(crate) soil_step: Option<Time>,
 }

@@ -2,6 +2,7 @@
 
 mod access;
 mod actuators;
+mod control;
 mod meters;
 mod pipes;
 mod pressure;
@@ -10,7 +11,6 @@ mod saturation;
 mod validity;
 mod words;
 
-use crate::channels;
 use crate::error::RunError;
 use crate::plan::Plan;
 use crate::state::State;
@@ -24,6 +24,7 @@ use anergy_network::graph::NodeKind;
 use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::Hold;
 use anergy_network::transport::Transport;
+use control::Desk;
 pub(crate) use pipes::stored_j;
 pub use pressure::Crossing;
 pub(crate) use pressure::crossings;
@@ -45,6 +46,7 @@ pub struct Simulation {
     holds: Vec<Hold>,
     /// Where each driver was found last; results do not depend on it.
     near: Vec<usize>,
+    desk: Desk,
 }
 
 impl Simulation {
@@ -65,6 +67,7 @@ impl Simulation {
             wanted: plan.initial.network.requests.clone(),
             holds: vec![Hold::Held; plan.prescriptions.len()],
             near: vec![0; plan.drivers.len()],
+            desk: Desk::new(&plan),
             plan,
         };
         simulation.reset()?;
@@ -89,6 +92,12 @@ impl Simulation {
         self.fill_vessels();
         self.solve_hydraulics()?;
         self.settle_heads()?;
+        self.rest_sensors();
+        if self.plan.starts_settled {
+            crate::steady::settle(self)?;
+            self.rest_sensors();
+            self.rest_controllers();
+        }
         self.watch_pressures(Time::ZERO);
         self.fill_pipes();
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
@@ -123,6 +132,7 @@ impl Simulation {
         self.read_meters(dt_s);
         self.watch_pressures(end);
         self.hold_pressures(dt_s);
+        self.sense(end, dt_s);
         self.state.time = end;
         self.state.steps += 1;
         Ok(())
@@ -151,39 +161,6 @@ impl Simulation {
             }
             self.step_to(end)?;
             self.check_temperatures(&end)?;
-        }
-        Ok(())
-    }
-
-    /// Controllers that are due read their measured channel and write their signal.
-    fn control(&mut self, now: Time) -> Result<(), RunError> {
-        for (i, planned) in self.plan.controllers.iter().enumerate() {
-            if self.state.next_tick[i] > now {
-                continue;
-            }
-            let dt_s = (now - self.state.last_tick[i]).as_s();
-            self.state.last_tick[i] = now;
-            self.state.next_tick[i] = now + planned.interval;
-            let measured = channels::value(&self.plan, &self.state, planned.measures);
-            let set_point = self.state.signals[planned.set_point.index()];
-            let spec = self.plan.signals.spec(planned.acts_on);
-            let output = planned
-                .controller
-                .update(
-                    dt_s,
-                    measured,
-                    set_point,
-                    (spec.min, spec.max),
-                    &mut self.state.controller_states[planned.state.clone()],
-                )
-                .map_err(|source| RunError::Control {
-                    time: now.to_string(),
-                    controller: planned.name.clone(),
-                    source,
-                })?;
-            if !self.state.taken_over[planned.acts_on.index()] {
-                self.state.signals[planned.acts_on.index()] = output;
-            }
         }
         Ok(())
     }
@@ -357,6 +334,7 @@ impl Simulation {
         self.advance_units(0.0);
         self.read_meters(0.0);
         self.hold_pressures(0.0);
+        self.rest_sensors();
         Ok(report)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::error::RunError;
 use crate::simulation::Missed;
+use anergy_control::sensor::SensorState;
 use anergy_core::clock::Time;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::StationState;
@@ -50,6 +51,7 @@ pub struct State {
     pub(crate) crossed: Vec<bool>,
     /// What is remembered of each target.
     pub(crate) missed: Vec<Missed>,
+    pub(crate) sensors: Vec<SensorState>,
     pub(crate) controller_states: Vec<f64>,
     pub(crate) next_tick: Vec<Time>,
     pub(crate) last_tick: Vec<Time>,

@@ -1,20 +1,18 @@
 //! The steady state: inputs frozen at t = 0, actuators arrived, temperatures settled.
 //!
-//! A controller with integral action is replaced by "measured = set point, actuator free within its
-//! limits, else at the limit": an outer Newton iteration on the actuators, its Jacobian by differences
-//! of settled states.
+//! A controller is replaced by the balance in which its outputs stay (`steady/control.rs`).
 
 mod acceleration;
+mod control;
 
 use crate::build::build;
-use crate::channels;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::simulation::{Crossing, Simulation, Unreached, crossings, missed_now};
 use acceleration::Acceleration;
 use anergy_network::hydraulics::HydraulicReport;
 use anergy_network::state::Hold;
-use nalgebra::{DMatrix, DVector};
+use control::settle_controllers;
 use serde::Serialize;
 
 /// Temperatures have settled when none changes by more, K.
@@ -24,11 +22,6 @@ const SETTLED_KG_S: f64 = 1e-11;
 /// Water that a vessel may take up in the steady state, kg/s, as what a pressure reference may exchange.
 const VESSEL_KG_S: f64 = 1e-6;
 const MAX_ROUNDS: u32 = 2_000;
-const MAX_CONTROL_ROUNDS: u32 = 60;
-/// Actuator change for the difference quotient, relative to its range where that is finite.
-const DIFFERENCE: f64 = 1e-5;
-/// A set point is reached within this share of its scale.
-const REACHED: f64 = 1e-9;
 
 /// A node in the steady state.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -173,115 +166,6 @@ fn settle_temperatures(simulation: &mut Simulation) -> Result<u32, RunError> {
         acceleration.after_round(simulation);
     }
     Err(RunError::NotSettled { iterations: MAX_ROUNDS, culprit })
-}
-
-/// Newton on the actuators of all controllers, within their limits.
-fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
-    let plan = simulation.plan().clone();
-    let n = plan.controllers.len();
-    let limits: Vec<(f64, f64)> = plan
-        .controllers
-        .iter()
-        .map(|controller| {
-            let spec = plan.signals.spec(controller.acts_on);
-            controller.controller.output_limits((spec.min, spec.max))
-        })
-        .collect();
-    let set =
-        |simulation: &mut Simulation, outputs: &DVector<f64>| -> Result<DVector<f64>, RunError> {
-            for (controller, output) in plan.controllers.iter().zip(outputs) {
-                simulation.state_mut().signals[controller.acts_on.index()] = *output;
-            }
-            settle_temperatures(simulation)?;
-            Ok(errors(simulation))
-        };
-    let start = |(min, max): (f64, f64)| {
-        if min.is_finite() && max.is_finite() { min + 0.7 * (max - min) } else { 0.0 }
-    };
-    let mut outputs = DVector::from_iterator(n, limits.iter().map(|l| start(*l)));
-    let scale: Vec<f64> = plan
-        .controllers
-        .iter()
-        .map(|c| simulation.state().signals[c.set_point.index()].abs().max(1e-3))
-        .collect();
-    for _ in 0..MAX_CONTROL_ROUNDS {
-        let error = set(simulation, &outputs)?;
-        // At a limit, an error that pushes beyond it stays.
-        let held = |i: usize| {
-            let push = error[i] * plan.controllers[i].controller.direction();
-            (outputs[i] >= limits[i].1 && push > 0.0) || (outputs[i] <= limits[i].0 && push < 0.0)
-        };
-        let free: Vec<usize> = (0..n).filter(|&i| !held(i)).collect();
-        if free.iter().all(|&i| error[i].abs() <= REACHED * scale[i]) {
-            return Ok(());
-        }
-        let mut jacobian = DMatrix::zeros(free.len(), free.len());
-        for (column, &i) in free.iter().enumerate() {
-            let range = limits[i].1 - limits[i].0;
-            let step = if range.is_finite() { DIFFERENCE * range } else { DIFFERENCE };
-            let step = if outputs[i] + step > limits[i].1 { -step } else { step };
-            let mut moved = outputs.clone();
-            moved[i] += step;
-            let moved_error = set(simulation, &moved)?;
-            for (row, &j) in free.iter().enumerate() {
-                jacobian[(row, column)] = (moved_error[j] - error[j]) / step;
-            }
-        }
-        let without_effect = |i: usize| RunError::NotSettled {
-            iterations: 1,
-            culprit: format!(
-                "the actuator of controller \"{}\" has no effect on what it measures",
-                plan.controllers[i].name
-            ),
-        };
-        // An actuator beyond what its element can do, like a head that the pump does not reach at this
-        // flow, has no effect here, but may have one elsewhere.
-        let idle = (0..free.len()).find(|&k| jacobian.column(k).iter().all(|slope| *slope == 0.0));
-        if let Some(k) = idle {
-            let i = free[k];
-            let (min, max) = limits[i];
-            let push = error[i] * plan.controllers[i].controller.direction();
-            let mut other = outputs.clone();
-            other[i] = if outputs[i] > min { min } else { max };
-            if !other[i].is_finite() || set(simulation, &other)? == error {
-                return Err(without_effect(i));
-            }
-            outputs[i] = (outputs[i] + 0.3 * (max - min) * push.signum()).clamp(min, max);
-            continue;
-        }
-        let rhs = DVector::from_iterator(free.len(), free.iter().map(|&i| -error[i]));
-        let Some(change) = jacobian.lu().solve(&rhs) else {
-            return Err(without_effect(free[0]));
-        };
-        for (k, &i) in free.iter().enumerate() {
-            let (min, max) = limits[i];
-            let range = if (max - min).is_finite() { max - min } else { f64::INFINITY };
-            outputs[i] = (outputs[i] + change[k].clamp(-0.3 * range, 0.3 * range)).clamp(min, max);
-        }
-    }
-    let error = errors(simulation);
-    let worst =
-        (0..n).max_by(|&i, &j| (error[i].abs() / scale[i]).total_cmp(&(error[j].abs() / scale[j])));
-    let worst = worst.unwrap_or(0);
-    Err(RunError::NotSettled {
-        iterations: MAX_CONTROL_ROUNDS,
-        culprit: format!(
-            "controller \"{}\" misses its set point by {:.3e}",
-            plan.controllers[worst].name, error[worst]
-        ),
-    })
-}
-
-/// Set point minus measured value of every controller.
-fn errors(simulation: &Simulation) -> DVector<f64> {
-    let (plan, state) = (simulation.plan(), simulation.state());
-    DVector::from_iterator(
-        plan.controllers.len(),
-        plan.controllers.iter().map(|controller| {
-            state.signals[controller.set_point.index()]
-                - channels::value(plan, state, controller.measures)
-        }),
-    )
 }
 
 /// The tables of a settled simulation.

@@ -1,10 +1,15 @@
 //! Proportional-integral control of one signal by one actuator.
 //!
-//! **Equation** `u = sat(K e + I)`, `dI/dt = K e/T_i + (u - u_unlimited)/T_i` (back-calculation),
-//! `e = set point - measured`. **Assumptions** the output is held between updates. **Numerics** the
-//! back-calculation never overshoots, whatever the interval. **Sources** `astrom2006`.
+//! **Equation** `u = sat(f K e + I)`, `dI/dt = f K e/T_i + (u - u_unlimited)/T_i` (back-calculation),
+//! `e = set point - measured`, less the dead band on either side of zero; `f` is the scheduled factor at
+//! the present integral, 1 without a schedule. **Assumptions** the output is held between updates.
+//! **Numerics** the back-calculation never overshoots, whatever the interval. **Sources** `astrom2006`.
 
-use crate::controller::{ControlError, Controller};
+use crate::controller::{
+    Balance, ControlError, Controller, Inputs, SetPoint, Timing, narrowed, not_negative, not_zero,
+    ordered, positive,
+};
+use anergy_core::numerics::interpolate::between_points;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +27,18 @@ pub struct PiParams {
     /// Time between two updates, s; 0 updates at every step.
     #[serde(default)]
     pub interval_s: f64,
+    /// Time of the first update, s: controllers of one interval and different offsets take turns.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset_s: f64,
+    /// Errors up to this size, in the unit of the measured signal, are left alone.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub dead_band: f64,
+    /// Outputs at which the gain is scheduled, rising.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub schedule_output: Vec<f64>,
+    /// Factors of the gain at those outputs; straight in between.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub schedule_factor: Vec<f64>,
     /// Output at the start of a run.
     #[serde(default)]
     pub initial_output: f64,
@@ -31,6 +48,11 @@ pub struct PiParams {
     /// Largest output. Absent: the actuator's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub output_max: Option<f64>,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// A PI controller ready to run. State: the integral part.
@@ -45,70 +67,102 @@ impl PiParams {
     /// # Errors
     /// Names the field that is out of range.
     pub fn build(&self, _context: &()) -> Result<Pi, ControlError> {
-        let out_of_range =
-            |field, value, requirement| Err(ControlError::OutOfRange { field, value, requirement });
-        if !self.gain.is_finite() || self.gain == 0.0 {
-            return out_of_range("gain", self.gain, "must not be zero");
+        not_zero("gain", self.gain)?;
+        positive("integral_time_s", self.integral_time_s)?;
+        not_negative("interval_s", self.interval_s)?;
+        not_negative("offset_s", self.offset_s)?;
+        not_negative("dead_band", self.dead_band)?;
+        ordered(self.output_min, self.output_max)?;
+        let problem =
+            |field, problem: &str| Err(ControlError::Fields { field, problem: problem.to_owned() });
+        if self.schedule_output.len() != self.schedule_factor.len() {
+            let lengths = format!(
+                "schedule_output has {} values and schedule_factor {}",
+                self.schedule_output.len(),
+                self.schedule_factor.len()
+            );
+            return problem("schedule_output", &lengths);
         }
-        if !self.integral_time_s.is_finite() || self.integral_time_s <= 0.0 {
-            return out_of_range("integral_time_s", self.integral_time_s, "must be positive");
+        if !self.schedule_output.windows(2).all(|pair| pair[0] < pair[1]) {
+            return problem("schedule_output", "schedule_output must rise");
         }
-        if !self.interval_s.is_finite() || self.interval_s < 0.0 {
-            return out_of_range("interval_s", self.interval_s, "must not be negative");
-        }
-        if let (Some(min), Some(max)) = (self.output_min, self.output_max)
-            && min >= max
-        {
-            return out_of_range("output_min", min, "must be below output_max");
+        for factor in &self.schedule_factor {
+            positive("schedule_factor", *factor)?;
         }
         Ok(Pi { params: self.clone() })
     }
 }
 
+impl Pi {
+    /// The error outside of the dead band.
+    fn error(&self, inputs: &Inputs) -> f64 {
+        let error = inputs.set_points[0] - inputs.measured[0];
+        error.signum() * (error.abs() - self.params.dead_band).max(0.0)
+    }
+
+    fn gain_at(&self, output: f64) -> f64 {
+        let params = &self.params;
+        if params.schedule_output.is_empty() {
+            params.gain
+        } else {
+            params.gain * between_points(&params.schedule_output, &params.schedule_factor, output)
+        }
+    }
+}
+
 impl Controller for Pi {
-    fn interval_s(&self) -> f64 {
-        self.params.interval_s
+    fn timing(&self) -> Timing {
+        Timing { interval_s: self.params.interval_s, offset_s: self.params.offset_s }
+    }
+
+    fn set_points(&self) -> Vec<SetPoint> {
+        vec![SetPoint { name: "set_point", unit: "", value: self.params.set_point }]
     }
 
     fn initial_state(&self) -> Vec<f64> {
         vec![self.params.initial_output]
     }
 
-    fn output_limits(&self, (min, max): (f64, f64)) -> (f64, f64) {
-        // Within what the actuator can do, also when the file asks for more.
-        let low = self.params.output_min.map_or(min, |low| low.clamp(min, max));
-        let high = self.params.output_max.map_or(max, |high| high.clamp(min, max));
-        (low, high.max(low))
-    }
-
-    fn direction(&self) -> f64 {
-        self.params.gain.signum()
-    }
-
-    fn set_point(&self) -> f64 {
-        self.params.set_point
+    fn output_limits(&self, _output: usize, actuator: (f64, f64)) -> (f64, f64) {
+        narrowed(actuator, self.params.output_min, self.params.output_max)
     }
 
     fn update(
         &self,
         dt_s: f64,
-        measured: f64,
-        set_point: f64,
-        limits: (f64, f64),
+        inputs: &Inputs,
         state: &mut [f64],
-    ) -> Result<f64, ControlError> {
-        if !measured.is_finite() {
-            return Err(ControlError::Measured { measured });
-        }
-        let (min, max) = self.output_limits(limits);
-        let error = set_point - measured;
+        outputs: &mut [f64],
+    ) -> Result<(), ControlError> {
+        let inputs = inputs.checked()?;
+        let (min, max) = self.output_limits(0, inputs.limits[0]);
+        let push = self.gain_at(state[0]) * self.error(inputs);
         let share = dt_s / self.params.integral_time_s;
         let integral = &mut state[0];
-        *integral += self.params.gain * error * share;
-        let unlimited = *integral + self.params.gain * error;
+        *integral += push * share;
+        let unlimited = *integral + push;
         let limited = unlimited.clamp(min, max);
         *integral += (limited - unlimited) * share.min(1.0);
-        Ok(limited)
+        outputs[0] = limited;
+        Ok(())
+    }
+
+    fn balance(&self, inputs: &Inputs, _outputs: &[f64], balance: &mut [Balance]) {
+        // In the middle of the dead band.
+        let miss = self.params.gain.signum() * (inputs.set_points[0] - inputs.measured[0]);
+        balance[0] = Balance { miss, scale: inputs.set_points[0].abs().max(1e-3) };
+    }
+
+    fn rest(&self, _inputs: &Inputs, outputs: &[f64], state: &mut [f64]) {
+        state[0] = outputs[0];
+    }
+
+    fn tracks(&self) -> bool {
+        true
+    }
+
+    fn gain(&self) -> f64 {
+        self.params.gain
     }
 }
 
@@ -116,42 +170,70 @@ impl Controller for Pi {
 mod tests {
     use super::*;
 
-    fn pi() -> Pi {
+    fn params() -> PiParams {
         PiParams {
             set_point: 2.0,
             gain: 0.1,
             integral_time_s: 8.0,
             interval_s: 0.0,
+            offset_s: 0.0,
+            dead_band: 0.0,
+            schedule_output: Vec::new(),
+            schedule_factor: Vec::new(),
             initial_output: 0.0,
             output_min: None,
             output_max: None,
         }
-        .build(&())
-        .unwrap()
+    }
+
+    fn update(pi: &Pi, dt_s: f64, measured: f64, state: &mut [f64]) -> Result<f64, ControlError> {
+        let inputs = Inputs { measured: &[measured], set_points: &[2.0], limits: &[(0.0, 1.0)] };
+        let mut outputs = [f64::NAN];
+        pi.update(dt_s, &inputs, state, &mut outputs)?;
+        Ok(outputs[0])
     }
 
     #[test]
     fn integrates_a_constant_error() {
         // e = 1: after 8 s of 0.1 s updates I = 0.1, u = 0.2
-        let (pi, mut state, mut output) = (pi(), vec![0.0], 0.0);
+        let (pi, mut state, mut output) = (params().build(&()).unwrap(), vec![0.0], 0.0);
         for _ in 0..80 {
-            output = pi.update(0.1, 1.0, 2.0, (0.0, 1.0), &mut state).unwrap();
+            output = update(&pi, 0.1, 1.0, &mut state).unwrap();
         }
         assert!((output - 0.2).abs() < 1e-12);
     }
 
     #[test]
     fn leaves_its_limit_at_once_when_the_error_turns() {
-        let (pi, mut state) = (pi(), vec![0.0]);
+        let (pi, mut state) = (params().build(&()).unwrap(), vec![0.0]);
         for _ in 0..10_000 {
-            assert!(pi.update(1.0, -100.0, 2.0, (0.0, 1.0), &mut state).unwrap() <= 1.0);
+            assert!(update(&pi, 1.0, -100.0, &mut state).unwrap() <= 1.0);
         }
         // Without anti-windup the integral would be thousands; now the output falls within seconds.
         let mut output = 1.0;
         for _ in 0..20 {
-            output = pi.update(1.0, 4.0, 2.0, (0.0, 1.0), &mut state).unwrap();
+            output = update(&pi, 1.0, 4.0, &mut state).unwrap();
         }
         assert!(output < 0.5, "{output} {state:?}");
-        assert!(pi.update(1.0, f64::NAN, 2.0, (0.0, 1.0), &mut state).is_err());
+        assert!(update(&pi, 1.0, f64::NAN, &mut state).is_err());
+    }
+
+    #[test]
+    fn small_errors_rest_in_the_dead_band_and_the_gain_follows_its_schedule() {
+        let pi = PiParams { dead_band: 0.3, ..params() }.build(&()).unwrap();
+        let mut state = vec![0.4];
+        assert_eq!(update(&pi, 1.0, 1.75, &mut state), Ok(0.4));
+        // e = 0.5 - 0.3: u = 0.4 + 0.1 0.2 (1 + 1/8)
+        assert!((update(&pi, 1.0, 1.5, &mut state).unwrap() - 0.4225).abs() < 1e-12);
+        let scheduled = PiParams {
+            schedule_output: vec![0.0, 1.0],
+            schedule_factor: vec![1.0, 3.0],
+            ..params()
+        };
+        // At I = 0.5 the factor is 2: u = 0.5 + 0.2 (1 + 1/8)
+        let pi = scheduled.build(&()).unwrap();
+        assert!((update(&pi, 1.0, 1.0, &mut [0.5]).unwrap() - 0.725).abs() < 1e-12);
+        let falling = PiParams { schedule_output: vec![1.0, 0.0], ..scheduled };
+        assert_eq!(falling.build(&()).unwrap_err().field(), Some("schedule_output"));
     }
 }

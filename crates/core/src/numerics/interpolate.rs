@@ -158,6 +158,19 @@ impl Pchip {
     }
 }
 
+/// Straight between points of rising `x`, the end values beyond them.
+pub fn between_points(x: &[f64], y: &[f64], at: f64) -> f64 {
+    let right = x.partition_point(|x| *x <= at);
+    if right == 0 {
+        return y[0];
+    }
+    if right == x.len() {
+        return y[right - 1];
+    }
+    let share = (at - x[right - 1]) / (x[right] - x[right - 1]);
+    y[right - 1] + share * (y[right] - y[right - 1])
+}
+
 /// Cubic through two points `(x, y, dy/dx)` with value and slope.
 #[inline]
 pub fn cubic_hermite(x: f64, left: (f64, f64, f64), right: (f64, f64, f64)) -> Linear {

@@ -52,7 +52,9 @@ impl Builder<'_> {
         let holds = |edge: usize| matches!(&plan.network.edges[edge].element, Element::Pump(pump) if pump.holds());
         let pumps = (0..plan.commands.len()).filter(|&i| plan.commands[i].is_some() && holds(i));
         let pumps = pumps.map(Target::Pump);
-        let controllers = (0..plan.controllers.len()).map(Target::Controller);
+        let controllers =
+            plan.controllers.iter().enumerate().filter(|(_, planned)| planned.controller.tracks());
+        let controllers = controllers.map(|(i, _)| Target::Controller(i));
         plan.targets = pumps.chain(controllers).collect();
         plan.initial.missed = vec![Missed::default(); plan.targets.len()];
     }

@@ -1,16 +1,15 @@
-//! Signals, and who writes them: units, schedules, series, controllers.
+//! Signals, and who writes them: units, schedules, series.
 
 use super::Builder;
 use crate::diagnostic::did_you_mean;
 use crate::drivers::Driver;
-use crate::model::{ControllerSpec, Place};
+use crate::model::Place;
 use crate::model_file::NodeEntryKind;
-use crate::plan::{NodeInputs, Plan, PlannedController, PlannedUnit};
+use crate::plan::{NodeInputs, PlannedUnit};
 use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::{in_percent, in_words, refused};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
-use anergy_core::medium::ZERO_CELSIUS_K;
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_core::units::Unit;
 use anergy_network::elements::Element;
@@ -227,91 +226,10 @@ impl Builder<'_> {
         self.report(message, place.of("unit"), Some(hint));
         None
     }
-
-    /// The output at the start is a value of the signal, where the file gives it.
-    fn check_initial_output(&mut self, spec: &ControllerSpec, signal: &SignalSpec) {
-        let field = "initial_output";
-        let value = spec.params.to_value().get(field).and_then(serde_json::Value::as_f64);
-        let Some(value) = value.filter(|_| spec.place.has(field)) else { return };
-        if (signal.min..=signal.max).contains(&value) {
-            return;
-        }
-        let (name, range) = (&signal.name, range(signal, None));
-        let message = format!("{field} = {value} is outside the range of \"{name}\": {range}");
-        let what = format!("controller \"{}\"", spec.id);
-        let mut problem = refused(&what, &spec.place, Some(field), &message);
-        problem.hint = ratio_hint(signal, value);
-        self.problems.push(problem);
-    }
-
-    pub(super) fn controllers(
-        &mut self,
-        plan: &mut Plan,
-        set_points: &[SignalId],
-        writers: &mut HashMap<SignalId, Writer>,
-    ) {
-        let mut state_len = 0;
-        for (spec, set_point) in self.model.controllers.iter().zip(set_points) {
-            let what = format!("controller \"{}\"", spec.id);
-            let controller = spec.params.build(&());
-            if let Err(error) = &controller {
-                let problem = refused(&what, &spec.place, error.field(), &error.to_string());
-                self.problems.push(problem);
-            }
-            let measured = plan.channels.iter().position(|c| c.name == spec.measures);
-            if measured.is_none() {
-                let hint =
-                    did_you_mean(&spec.measures, plan.channels.iter().map(|c| c.name.as_str()));
-                let message =
-                    format!("{what} measures \"{}\", which does not exist", spec.measures);
-                let hint = hint.or_else(|| {
-                    Some("a channel is for example \"EDGE.m_flow_kg_s\" or \"NODE.t_k\"".into())
-                });
-                self.report(message, spec.place.of("measures"), hint);
-            }
-            let acts_on = plan.signals.find(&spec.acts_on);
-            match acts_on {
-                None => {
-                    let names = plan.signals.specs().iter().map(|signal| signal.name.as_str());
-                    let hint = did_you_mean(&spec.acts_on, names);
-                    let message =
-                        format!("{what} acts on \"{}\", which does not exist", spec.acts_on);
-                    let hint =
-                        hint.or_else(|| Some("`anergy check --signals` lists all signals".into()));
-                    self.report(message, spec.place.of("acts_on"), hint);
-                }
-                Some(signal) => {
-                    self.check_initial_output(spec, plan.signals.spec(signal));
-                    self.claim(writers, signal, &plan.signals, &what, spec.place.of("acts_on"));
-                }
-            }
-            let (Ok(controller), Some(measured), Some(acts_on)) = (controller, measured, acts_on)
-            else {
-                continue;
-            };
-            let state = controller.initial_state();
-            let interval = Time::from_s(controller.interval_s()).unwrap_or(Time::ZERO);
-            plan.controllers.push(PlannedController {
-                name: spec.id.clone(),
-                controller,
-                measures: plan.sources[measured],
-                measured_name: spec.measures.clone(),
-                zero: if plan.channels[measured].unit == "K" { ZERO_CELSIUS_K } else { 0.0 },
-                set_point: *set_point,
-                acts_on,
-                interval,
-                state: state_len..state_len + state.len(),
-            });
-            state_len += state.len();
-            plan.initial.controller_states.extend(state);
-            plan.initial.next_tick.push(Time::ZERO);
-            plan.initial.last_tick.push(Time::ZERO);
-        }
-    }
 }
 
 /// `0 to 1`: the values a signal can have, in the unit its values are written in.
-fn range(signal: &SignalSpec, unit: Option<Unit>) -> String {
+pub(super) fn range(signal: &SignalSpec, unit: Option<Unit>) -> String {
     let written = |si: f64| {
         let value = unit.map_or(si, |unit| unit.of_si(si));
         // Without the rounding of the conversion.
@@ -336,7 +254,7 @@ fn celsius_hint(signal: &SignalSpec, value: f64) -> Option<String> {
 }
 
 /// What to write instead of a ratio in percent.
-fn ratio_hint(signal: &SignalSpec, value: f64) -> Option<String> {
+pub(super) fn ratio_hint(signal: &SignalSpec, value: f64) -> Option<String> {
     in_percent(value).filter(|_| signal.unit.is_empty() && signal.min >= 0.0 && signal.max <= 2.0)
 }
 

@@ -20,6 +20,7 @@ use crate::model::*;
 use crate::table::Tables;
 use crate::temperatures::Temperatures;
 use crate::wording::refused;
+use anergy_control::sensor::SensorEntry;
 use anergy_core::medium::Medium;
 use jiff::Timestamp;
 use std::collections::{HashMap, HashSet};
@@ -43,6 +44,7 @@ pub(super) const SECTIONS: &[&str] = &[
     "three_way_valve",
     "interface",
     "unit",
+    "sensor",
     "controller",
     "worst_point",
     "prescribed",
@@ -163,6 +165,7 @@ impl ModelReader<'_> {
             tables: self.tables.clone(),
             units: self.units(&stations),
             interfaces,
+            sensors: self.sensors(),
             controllers: self.controllers(),
             worst_points: self.worst_points(),
             prescriptions: self.prescriptions(),
@@ -319,6 +322,20 @@ impl ModelReader<'_> {
             }
         }
         drivers
+    }
+
+    fn sensors(&mut self) -> Vec<SensorSpec> {
+        let read = |reader: &mut Self, tree: Tree| {
+            let what = format!("sensor \"{}\"", tree.text("id").unwrap_or("?"));
+            let (entry, table) = reader.reader.read::<SensorEntry>(&what, &tree)?;
+            let place = place(&what, &tree, &table);
+            if entry.id.is_empty() {
+                reader.reader.report(Diagnostic::new("sensor: id is empty", place.of("id")));
+                return None;
+            }
+            Some(SensorSpec { entry, place })
+        };
+        self.items("sensor").into_iter().filter_map(|tree| read(self, tree)).collect()
     }
 
     fn prescriptions(&mut self) -> Vec<PrescriptionSpec> {

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::effects::EffectParams;
-use anergy_control::controllers::ControllerParams;
+use anergy_control::controllers::{ControllerParams, ports};
+use anergy_control::sensor::SensorEntry;
 use anergy_core::units::alternatives;
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
@@ -14,7 +15,6 @@ use std::collections::BTreeSet;
 /// The JSON Schema (2020-12) of a model file, with every unit a field can be written in.
 pub fn schema() -> Value {
     let list = |items: Value| json!({ "type": "array", "items": items });
-    let text = |description: &str| json!({ "type": "string", "description": description });
     let edge_ends = [
         ("id", text("Name of the edge")),
         ("from", text("Node at port a")),
@@ -87,17 +87,8 @@ pub fn schema() -> Value {
             ],
             &[],
         )),
-        "controller": list(kinds(
-            "kind",
-            ControllerParams::KINDS,
-            ControllerParams::schema,
-            &[
-                ("id", text("Name; default acts_on.controller")),
-                ("measures", text("Channel it measures")),
-                ("acts_on", text("Signal it drives")),
-            ],
-            &["measures", "acts_on"],
-        )),
+        "sensor": list(entry(&schema_for!(SensorEntry), &[])),
+        "controller": list(controllers()),
         "worst_point": list(entry(&schema_for!(WorstPointEntry), &[])),
         "prescribed": list(entry(&schema_for!(PrescribedEntry), &[])),
         "schedule": list(entry(&schema_for!(ScheduleEntry), &[])),
@@ -164,6 +155,26 @@ fn part_schema(part: &str) -> Value {
         schema["properties"]["pipe"] = json!({ "type": "string", "description": "Name of a pipe_type, or of a pipe of the catalogue" });
     }
     schema
+}
+
+fn text(description: &str) -> Value {
+    json!({ "type": "string", "description": description })
+}
+
+/// The controllers: each kind names its own channels and signals.
+fn controllers() -> Value {
+    let of_kind = |kind: &&str| {
+        let ports = ports(kind);
+        let mut own =
+            vec![("id", text("Name; default that of the first signal, with .controller"))];
+        own.extend(ports.measures.iter().map(|field| (*field, text("Channel it measures"))));
+        own.extend(ports.acts_on.iter().map(|field| (*field, text("Signal it drives"))));
+        let required: Vec<&str> = ports.measures.iter().chain(ports.acts_on).copied().collect();
+        let schema = |_: &str| ControllerParams::schema(kind);
+        let mut one = kinds("kind", &[kind], schema, &own, &required);
+        one["oneOf"].take().as_array_mut().and_then(Vec::pop)
+    };
+    json!({ "oneOf": ControllerParams::KINDS.iter().filter_map(of_kind).collect::<Vec<_>>() })
 }
 
 /// One schema per kind, chosen by the word of `field`.

@@ -71,12 +71,11 @@ fn missed(plan: &Plan, state: &State, target: Target) -> bool {
         }
         Target::Controller(i) => {
             let controller = &plan.controllers[i];
-            let wanted = state.signals[controller.set_point.index()];
-            let error = wanted - channels::value(plan, state, controller.measures);
-            let spec = plan.signals.spec(controller.acts_on);
-            let (min, max) = controller.controller.output_limits((spec.min, spec.max));
-            let output = state.signals[controller.acts_on.index()];
-            let push = error * controller.controller.direction();
+            let wanted = state.signals[controller.set_points.start];
+            let error = wanted - channels::value(plan, state, controller.measures[0]);
+            let (min, max) = controller.controller.output_limits(0, controller.limits[0]);
+            let output = state.signals[controller.acts_on[0].index()];
+            let push = error * controller.controller.gain().signum();
             let at_limit = (output >= max && push > 0.0) || (output <= min && push < 0.0);
             let size = (wanted - controller.zero).abs().max(ZERO);
             at_limit && error.abs() > REACHED * size
@@ -103,11 +102,11 @@ fn unreached(plan: &Plan, state: &State, target: Target) -> Unreached {
             let controller = &plan.controllers[i];
             Unreached {
                 id: controller.name.clone(),
-                quantity: controller.measured_name.clone(),
-                wanted: state.signals[controller.set_point.index()],
-                reached: channels::value(plan, state, controller.measures),
-                free: plan.signals.spec(controller.acts_on).name.clone(),
-                position: state.signals[controller.acts_on.index()],
+                quantity: controller.measured_names[0].clone(),
+                wanted: state.signals[controller.set_points.start],
+                reached: channels::value(plan, state, controller.measures[0]),
+                free: plan.signals.spec(controller.acts_on[0]).name.clone(),
+                position: state.signals[controller.acts_on[0].index()],
             }
         }
     }

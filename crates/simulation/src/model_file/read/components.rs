@@ -9,7 +9,7 @@ use crate::model::{ControllerSpec, EdgeSpec, NodeSpec, Place, UnitSpec, WrittenF
 use crate::model_file::expand::Plain;
 use crate::model_file::{NodeEntry, NodeEntryKind};
 use crate::wording::refused;
-use anergy_control::controllers::ControllerParams;
+use anergy_control::controllers::{ControllerParams, ports};
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
@@ -213,15 +213,21 @@ impl ModelReader<'_> {
 
     fn controller(&mut self, tree: Tree) -> Option<ControllerSpec> {
         let mut words = Words::new("controller", tree);
-        let measures = self.required_text(&mut words, "measures");
-        let acts_on = self.required_text(&mut words, "acts_on");
-        let id = self.optional_text(&mut words, "id");
-        let id = id.unwrap_or_else(|| format!("{}.controller", acts_on.as_deref().unwrap_or("?")));
-        words.what = format!("controller \"{id}\"");
+        let driven = ["acts_on", "id"].iter().find_map(|field| words.tree.text(field));
+        words.what = format!("controller \"{}\"", driven.unwrap_or("?"));
         let kind = self.kind::<ControllerParams>(&mut words)?;
+        let ports = ports(&kind);
+        let mut names = |fields: &[&'static str]| -> Vec<Option<String>> {
+            fields.iter().map(|field| self.required_text(&mut words, field)).collect()
+        };
+        let (measures, acts_on) = (names(ports.measures), names(ports.acts_on));
+        let id = self.optional_text(&mut words, "id");
+        let first = acts_on.iter().flatten().next().map_or("?", String::as_str);
+        let id = id.unwrap_or_else(|| format!("{first}.controller"));
         words.what = format!("controller \"{id}\" ({kind})");
         let (params, place) = self.parameters(words, &kind)?;
-        Some(ControllerSpec { id, measures: measures?, acts_on: acts_on?, params, place })
+        let all = |names: Vec<Option<String>>| names.into_iter().collect::<Option<Vec<String>>>();
+        Some(ControllerSpec { id, measures: all(measures)?, acts_on: all(acts_on)?, params, place })
     }
 
     /// What remains of an entry, as the parameters of its kind.

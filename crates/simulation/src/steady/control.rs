@@ -1,0 +1,133 @@
+//! Controllers in the steady state: "measured = set point, actuator free within its limits, else at the
+//! limit", or whatever else is the balance of a controller.
+//!
+//! **Numerics** Newton on the outputs of all controllers, its Jacobian by differences of settled states.
+
+use super::settle_temperatures;
+use crate::error::RunError;
+use crate::plan::Plan;
+use crate::simulation::Simulation;
+use anergy_control::controller::Balance;
+use nalgebra::{DMatrix, DVector};
+
+const MAX_ROUNDS: u32 = 60;
+/// Actuator change for the difference quotient, relative to its range where that is finite.
+const DIFFERENCE: f64 = 1e-5;
+/// A balance is reached within this share of its scale.
+const REACHED: f64 = 1e-9;
+
+/// An output with its limits.
+struct Output {
+    controller: usize,
+    output: usize,
+    min: f64,
+    max: f64,
+}
+
+fn outputs(plan: &Plan) -> Vec<Output> {
+    let mut all = Vec::new();
+    for (controller, planned) in plan.controllers.iter().enumerate() {
+        for (output, limits) in planned.limits.iter().enumerate() {
+            let (min, max) = planned.controller.output_limits(output, *limits);
+            all.push(Output { controller, output, min, max });
+        }
+    }
+    all
+}
+
+/// Sets the outputs and says what they miss.
+fn answer(
+    simulation: &mut Simulation,
+    outputs: &[Output],
+    values: &DVector<f64>,
+) -> Result<Vec<Balance>, RunError> {
+    let plan = simulation.plan().clone();
+    for (output, value) in outputs.iter().zip(values) {
+        let signal = plan.controllers[output.controller].acts_on[output.output];
+        simulation.state_mut().signals[signal.index()] = *value;
+    }
+    settle_temperatures(simulation)?;
+    Ok(misses(simulation))
+}
+
+fn misses(simulation: &Simulation) -> Vec<Balance> {
+    let (plan, state) = (simulation.plan(), simulation.state());
+    plan.controllers.iter().flat_map(|planned| planned.balance(plan, state)).collect()
+}
+
+/// Newton on the outputs of all controllers, within their limits.
+pub(super) fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
+    let plan = simulation.plan().clone();
+    let outputs = outputs(&plan);
+    let n = outputs.len();
+    let start = |o: &Output| {
+        if o.min.is_finite() && o.max.is_finite() { o.min + 0.7 * (o.max - o.min) } else { 0.0 }
+    };
+    let mut values = DVector::from_iterator(n, outputs.iter().map(start));
+    let name = |i: usize| &plan.controllers[outputs[i].controller].name;
+    let without_effect = |i: usize| RunError::NotSettled {
+        iterations: 1,
+        culprit: format!(
+            "the actuator of controller \"{}\" has no effect on what it measures",
+            name(i)
+        ),
+    };
+    for _ in 0..MAX_ROUNDS {
+        let missed = answer(simulation, &outputs, &values)?;
+        // At a limit, a miss that pushes beyond it stays.
+        let held = |i: usize| {
+            let (o, miss) = (&outputs[i], missed[i].miss);
+            (values[i] >= o.max && miss > 0.0) || (values[i] <= o.min && miss < 0.0)
+        };
+        let free: Vec<usize> = (0..n).filter(|&i| !held(i)).collect();
+        if free.iter().all(|&i| missed[i].miss.abs() <= REACHED * missed[i].scale) {
+            return Ok(());
+        }
+        let mut jacobian = DMatrix::zeros(free.len(), free.len());
+        for (column, &i) in free.iter().enumerate() {
+            let range = outputs[i].max - outputs[i].min;
+            let step = if range.is_finite() { DIFFERENCE * range } else { DIFFERENCE };
+            let step = if values[i] + step > outputs[i].max { -step } else { step };
+            let mut moved = values.clone();
+            moved[i] += step;
+            let answered = answer(simulation, &outputs, &moved)?;
+            for (row, &j) in free.iter().enumerate() {
+                jacobian[(row, column)] = (answered[j].miss - missed[j].miss) / step;
+            }
+        }
+        // An actuator beyond what its element can do, like a head that the pump does not reach at this
+        // flow, has no effect here, but may have one elsewhere.
+        let idle = (0..free.len()).find(|&k| jacobian.column(k).iter().all(|slope| *slope == 0.0));
+        if let Some(k) = idle {
+            let i = free[k];
+            let Output { min, max, .. } = outputs[i];
+            let mut other = values.clone();
+            other[i] = if values[i] > min { min } else { max };
+            if !other[i].is_finite() || answer(simulation, &outputs, &other)? == missed {
+                return Err(without_effect(i));
+            }
+            values[i] = (values[i] + 0.3 * (max - min) * missed[i].miss.signum()).clamp(min, max);
+            continue;
+        }
+        let rhs = DVector::from_iterator(free.len(), free.iter().map(|&i| -missed[i].miss));
+        let Some(change) = jacobian.lu().solve(&rhs) else {
+            return Err(without_effect(free[0]));
+        };
+        for (k, &i) in free.iter().enumerate() {
+            let Output { min, max, .. } = outputs[i];
+            let range = if (max - min).is_finite() { max - min } else { f64::INFINITY };
+            values[i] = (values[i] + change[k].clamp(-0.3 * range, 0.3 * range)).clamp(min, max);
+        }
+    }
+    let missed = misses(simulation);
+    let size = |i: &usize| missed[*i].miss.abs() / missed[*i].scale;
+    let worst = (0..n).max_by(|i, j| size(i).total_cmp(&size(j))).unwrap_or(0);
+    Err(RunError::NotSettled {
+        iterations: MAX_ROUNDS,
+        culprit: format!(
+            "controller \"{}\" misses its balance by {:.3e}",
+            name(worst),
+            missed[worst].miss
+        ),
+    })
+}
