@@ -5,6 +5,7 @@
 //! more pressure than theirs: every consumer gets about its design flow.
 
 pub mod destest;
+pub mod tables;
 
 use std::collections::HashSet;
 use std::f64::consts::PI;
@@ -235,13 +236,7 @@ fn pipes(sites: &[Site], order: &[usize], loops: &[(usize, usize)]) -> String {
          [pressure_reference]\nnode = \"plant.cold\"\n",
     );
     // Writing to a String does not fail.
-    for (id, diameter_mm, resistance) in PIPES {
-        let _ = writeln!(
-            out,
-            "[pipe_type.{id}]\ninner_diameter_mm = {diameter_mm}\n\
-             insulation_resistance_k_m_w = {resistance}"
-        );
-    }
+    pipe_types(&mut out);
     for (i, site) in sites.iter().enumerate() {
         let _ = writeln!(
             out,
@@ -251,23 +246,43 @@ fn pipes(sites: &[Site], order: &[usize], loops: &[(usize, usize)]) -> String {
             site.y_m
         );
     }
-    let mut trench = |from: usize, to: usize, length_m: f64, pipe: &str| {
+    for (from, to, length_m, pipe) in trenches(sites, order, loops) {
         let _ = writeln!(
             out,
             "[[trench]]\nfrom = \"{}\"\nto = \"{}\"\nlength_m = {length_m:.1}\npipe = \"{pipe}\"",
             name(from),
             name(to)
         );
-    };
-    for &i in order.iter().skip(1) {
-        let site = &sites[i];
-        trench(site.parent, i, site.length_m, pipe(site.total_kg_s).0);
-    }
-    for &(a, b) in loops {
-        let flow_kg_s = sites[a].total_kg_s.min(sites[b].total_kg_s);
-        trench(a, b, distance_m(&sites[a], &sites[b]), pipe(flow_kg_s).0);
     }
     out
+}
+
+/// The types of pipes as sections of a model file.
+fn pipe_types(out: &mut String) {
+    for (id, diameter_mm, resistance) in PIPES {
+        let _ = writeln!(
+            out,
+            "[pipe_type.{id}]\ninner_diameter_mm = {diameter_mm}\n\
+             insulation_resistance_k_m_w = {resistance}"
+        );
+    }
+}
+
+/// From, to, length in m and type of pipe of each trench.
+fn trenches(
+    sites: &[Site],
+    order: &[usize],
+    loops: &[(usize, usize)],
+) -> Vec<(usize, usize, f64, &'static str)> {
+    let tree = order.iter().skip(1).map(|&i| {
+        let site = &sites[i];
+        (site.parent, i, site.length_m, pipe(site.total_kg_s).0)
+    });
+    let closing = loops.iter().map(|&(a, b)| {
+        let flow_kg_s = sites[a].total_kg_s.min(sites[b].total_kg_s);
+        (a, b, distance_m(&sites[a], &sites[b]), pipe(flow_kg_s).0)
+    });
+    tree.chain(closing).collect()
 }
 
 /// The plant: a pump that gives `head_pa` at the design flow, and 80 degC behind its exchanger.

@@ -17,12 +17,11 @@ use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
 use crate::model_file::InitialState;
-use crate::plan::{Plan, PlannedUnit};
+use crate::plan::{EdgeOnMap, NodeOnMap, Plan, PlannedUnit};
 use crate::state::{Reading, State};
 use crate::wording::refused;
 use anergy_core::clock::Time;
 use anergy_core::ids::{EdgeId, SignalId};
-use anergy_core::recorder::{MapEdge, MapNode, NetworkMap};
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
 use anergy_network::graph::Network;
@@ -32,7 +31,7 @@ use network::pipes;
 use signals::Writer;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Turns a model into a plan that can be simulated.
 ///
@@ -214,7 +213,16 @@ impl Builder<'_> {
             initial,
             channels: Vec::new(),
             sources: Vec::new(),
-            map: map(model),
+            known_channels: OnceLock::new(),
+            nodes_on_map: model
+                .nodes
+                .iter()
+                .map(|spec| {
+                    let (x_m, y_m) = (spec.entry.x_m, spec.entry.y_m);
+                    NodeOnMap { site: spec.site.clone(), x_m, y_m }
+                })
+                .collect(),
+            edges_on_map: edges_on_map(model),
             model_name: model.name.clone(),
             model_text: model.text.clone(),
             start_unix_ns: start_unix_ns(model),
@@ -225,9 +233,13 @@ impl Builder<'_> {
             soil_step,
             network,
         };
-        (plan.channels, plan.sources) = channels::channels(&plan);
+        // Only what measures needs them now.
+        if !model.controllers.is_empty() || !model.sensors.is_empty() {
+            (plan.channels, plan.sources) = channels::channels(&plan);
+        }
         self.sensors(&mut plan);
         self.controllers(&mut plan, &set_points, &mut writers);
+        (plan.channels, plan.sources) = (Vec::new(), Vec::new());
         self.targets(&mut plan);
         Some(plan)
     }
@@ -341,32 +353,15 @@ fn start_unix_ns(model: &Model) -> i64 {
     start.and_then(|start| i64::try_from(start.as_nanosecond()).ok()).unwrap_or(0)
 }
 
-fn map(model: &Model) -> NetworkMap {
-    NetworkMap {
-        nodes: model
-            .nodes
-            .iter()
-            .map(|spec| MapNode {
-                id: spec.entry.id.clone(),
-                site: spec.site.clone(),
-                x_m: spec.entry.x_m,
-                y_m: spec.entry.y_m,
-            })
-            .collect(),
-        edges: model
-            .edges
-            .iter()
-            .map(|spec| MapEdge {
-                id: spec.id.clone(),
-                kind: spec.params.kind().to_owned(),
-                from: spec.from.clone(),
-                to: spec.to.clone(),
-                length_m: match &spec.params {
-                    ElementParams::Pipe(pipe) => pipe.length_m,
-                    _ => 0.0,
-                },
-                station: spec.station.clone(),
-            })
-            .collect(),
-    }
+fn edges_on_map(model: &Model) -> Vec<EdgeOnMap> {
+    let length_m = |params: &ElementParams| match params {
+        ElementParams::Pipe(pipe) => pipe.length_m,
+        _ => 0.0,
+    };
+    let edges = model.edges.iter().map(|spec| EdgeOnMap {
+        kind: spec.params.kind(),
+        length_m: length_m(&spec.params),
+        station: spec.station.clone(),
+    });
+    edges.collect()
 }

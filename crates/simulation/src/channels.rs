@@ -182,6 +182,7 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(ChannelGroup::Balances, "network", "friction_w", "W", Source::TotalFriction);
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
     }
+    sensors(&mut list, plan);
     (list.channels, list.sources)
 }
 
@@ -192,10 +193,14 @@ pub(crate) const DIFFERENCE_K: &str = "delta K";
 pub(crate) fn add_sensors(plan: &mut Plan) {
     let channels = std::mem::take(&mut plan.channels);
     let mut list = List { channels, sources: std::mem::take(&mut plan.sources) };
+    sensors(&mut list, plan);
+    (plan.channels, plan.sources) = (list.channels, list.sources);
+}
+
+fn sensors(list: &mut List, plan: &Plan) {
     for (i, sensor) in plan.sensors.iter().enumerate() {
         list.add(ChannelGroup::Control, &sensor.name, "value", &sensor.unit, Source::Sensor(i));
     }
-    (plan.channels, plan.sources) = (list.channels, list.sources);
 }
 
 struct List {

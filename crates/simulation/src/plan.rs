@@ -1,13 +1,13 @@
 //! The plan of a simulation: everything that does not change during a run, by id.
 
-use crate::channels::Source;
+use crate::channels::{self, Source};
 use crate::drivers::Driver;
 use crate::state::State;
 use anergy_control::controllers::LocalController;
 use anergy_control::sensor::Sensor;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
-use anergy_core::recorder::{Channel, NetworkMap};
+use anergy_core::recorder::{Channel, MapEdge, MapNode, NetworkMap};
 use anergy_core::signal::SignalTable;
 use anergy_network::elements::Element;
 use anergy_network::graph::Network;
@@ -17,6 +17,7 @@ use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::Equipment;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// A unit with its places in the flat state.
 #[derive(Debug, Clone)]
@@ -139,6 +140,22 @@ pub(crate) struct SeasonalGround {
     pub at_depths: Vec<(SignalId, f64)>,
 }
 
+/// What only maps say of a node.
+#[derive(Debug, Clone)]
+pub(crate) struct NodeOnMap {
+    pub site: String,
+    pub x_m: Option<f64>,
+    pub y_m: Option<f64>,
+}
+
+/// What only maps and tables say of an edge.
+#[derive(Debug, Clone)]
+pub(crate) struct EdgeOnMap {
+    pub kind: &'static str,
+    pub length_m: f64,
+    pub station: String,
+}
+
 /// Everything that does not change during a run.
 #[derive(Debug)]
 pub struct Plan {
@@ -175,9 +192,13 @@ pub struct Plan {
     /// Signal with the temperature around each edge.
     pub(crate) surroundings: Vec<(SignalId, f64)>,
     pub(crate) initial: State,
+    /// The channels while the plan is built, if something measures one; empty afterwards.
     pub(crate) channels: Vec<Channel>,
     pub(crate) sources: Vec<Source>,
-    pub(crate) map: NetworkMap,
+    /// The channels once they are asked for: there are many, and a solve needs none.
+    pub(crate) known_channels: OnceLock<(Vec<Channel>, Vec<Source>)>,
+    pub(crate) nodes_on_map: Vec<NodeOnMap>,
+    pub(crate) edges_on_map: Vec<EdgeOnMap>,
     pub(crate) model_name: String,
     pub(crate) model_text: String,
     pub(crate) start_unix_ns: i64,
@@ -235,7 +256,38 @@ impl Plan {
 
     /// The recorded channels.
     pub fn channels(&self) -> &[Channel] {
-        &self.channels
+        &self.known_channels().0
+    }
+
+    /// Where the values of the channels come from.
+    pub(crate) fn sources(&self) -> &[Source] {
+        &self.known_channels().1
+    }
+
+    fn known_channels(&self) -> &(Vec<Channel>, Vec<Source>) {
+        self.known_channels.get_or_init(|| channels::channels(self))
+    }
+
+    /// Geometry for maps.
+    pub(crate) fn map(&self) -> NetworkMap {
+        let nodes = self.node_names.iter().zip(&self.nodes_on_map).map(|(id, node)| MapNode {
+            id: id.clone(),
+            site: node.site.clone(),
+            x_m: node.x_m,
+            y_m: node.y_m,
+        });
+        let edges = self.edges_on_map.iter().enumerate().map(|(i, edge)| {
+            let ends = &self.network.edges[i];
+            MapEdge {
+                id: self.edge_names[i].clone(),
+                kind: edge.kind.to_owned(),
+                from: self.node_names[ends.from.index()].clone(),
+                to: self.node_names[ends.to.index()].clone(),
+                length_m: edge.length_m,
+                station: edge.station.clone(),
+            }
+        });
+        NetworkMap { nodes: nodes.collect(), edges: edges.collect() }
     }
 
     /// The input signals.

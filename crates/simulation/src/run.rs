@@ -42,8 +42,8 @@ pub fn run(
     let until = options.until.unwrap_or(plan.until);
     let step = options.step.unwrap_or(plan.step);
     let record = options.record.unwrap_or(plan.record);
-    recorder.start(&header(&plan, until, step, record), &plan.channels)?;
-    let mut row = vec![0.0; plan.channels.len()];
+    recorder.start(&header(&plan, until, step, record), plan.channels())?;
+    let mut row = vec![0.0; plan.channels().len()];
     let mut interrupted = false;
     let mut write = |simulation: &mut Simulation, recorder: &mut dyn Recorder| {
         simulation.fill_row(&mut row);
@@ -92,6 +92,6 @@ fn header(plan: &crate::plan::Plan, until: Time, step: Time, record: Time) -> Ru
             setting("density_kg_m3", plan.network.medium.density_kg_m3.to_string()),
             setting("heat_capacity_j_kg_k", plan.network.medium.heat_capacity_j_kg_k.to_string()),
         ],
-        map: plan.map.clone(),
+        map: plan.map(),
     }
 }

@@ -75,6 +75,31 @@ pub struct State {
 }
 
 impl State {
+    /// Memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        fn heap<T>(values: &Vec<T>) -> usize {
+            values.capacity() * size_of::<T>()
+        }
+        size_of::<Self>()
+            + self.network.heap_bytes()
+            + heap(&self.signals)
+            + heap(&self.taken_over)
+            + heap(&self.unit_states)
+            + heap(&self.unit_outputs)
+            + heap(&self.stations)
+            + heap(&self.station_heat_j)
+            + heap(&self.meters)
+            + heap(&self.pulse_shares)
+            + heap(&self.vessels)
+            + heap(&self.crossed)
+            + heap(&self.missed)
+            + heap(&self.sensors)
+            + heap(&self.controller_states)
+            + heap(&self.next_tick)
+            + heap(&self.last_tick)
+            + heap(&self.pipes)
+    }
+
     /// The state as bytes.
     ///
     /// # Errors

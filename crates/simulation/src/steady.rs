@@ -184,13 +184,13 @@ pub fn table(simulation: &Simulation, report: HydraulicReport) -> Steady {
             })
             .collect(),
         edges: plan
-            .map
-            .edges
+            .edge_names
             .iter()
+            .zip(&plan.edges_on_map)
             .enumerate()
-            .map(|(i, edge)| SteadyEdge {
-                id: edge.id.clone(),
-                kind: edge.kind.clone(),
+            .map(|(i, (id, edge))| SteadyEdge {
+                id: id.clone(),
+                kind: edge.kind.to_owned(),
                 m_flow_kg_s: network.m_flow_kg_s[i],
                 dp_pa: network.dp_pa(&plan.network, i),
             })

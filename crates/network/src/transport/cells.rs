@@ -62,6 +62,12 @@ pub(super) struct Step {
 }
 
 impl Cells {
+    /// Memory beside itself, in bytes.
+    pub fn heap_bytes(&self) -> usize {
+        self.place_of_edge.capacity() * size_of::<u32>()
+            + (self.first_share.capacity() + self.t_k.capacity()) * size_of::<f64>()
+    }
+
     /// All at `initial_k`.
     pub fn new(network: &Network, initial_k: f64) -> Self {
         let mut count = 0;

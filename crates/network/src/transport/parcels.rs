@@ -85,6 +85,11 @@ impl Parcels {
         Self { pool: Pool::new(&first), ring_of_edge }
     }
 
+    /// Memory beside itself, in bytes.
+    pub fn heap_bytes(&self) -> usize {
+        self.pool.heap_bytes() + self.ring_of_edge.capacity() * size_of::<u32>()
+    }
+
     /// Whether the other parcels belong to the same pipes.
     pub fn fits(&self, other: &Self) -> bool {
         self.pool.fits(&other.pool) && self.ring_of_edge == other.ring_of_edge

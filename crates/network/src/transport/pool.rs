@@ -63,6 +63,14 @@ impl Pool {
         Self { arena, rings, free: Default::default() }
     }
 
+    /// Memory beside itself, in bytes.
+    pub(super) fn heap_bytes(&self) -> usize {
+        let free: usize = self.free.iter().map(Vec::capacity).sum();
+        self.arena.capacity() * size_of::<Parcel>()
+            + self.rings.capacity() * size_of::<Ring>()
+            + free * size_of::<u32>()
+    }
+
     /// Whether the numbers of the other pool are those of a pool with as many rings.
     pub(super) fn fits(&self, other: &Self) -> bool {
         let ends_within = |start: u32, capacity: u32| {

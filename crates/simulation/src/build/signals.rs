@@ -127,6 +127,8 @@ impl Builder<'_> {
         let mut drivers = Vec::new();
         // Columns of one file share their times.
         let mut known_times: HashMap<*const f64, Arc<[Time]>> = HashMap::new();
+        // Signals that follow one column in one unit share its values.
+        let mut known_values: HashMap<(*const f64, &str), Arc<[f64]>> = HashMap::new();
         for spec in &self.model.drivers {
             let Some(signal) = signals.find(&spec.signal) else {
                 let names = signals.specs().iter().map(|signal| signal.name.as_str());
@@ -144,7 +146,11 @@ impl Builder<'_> {
                 continue;
             };
             let values: Arc<[f64]> = match unit {
-                Some(unit) => spec.values.iter().map(|value| unit.to_si(*value)).collect(),
+                Some(unit) => {
+                    let key = (spec.values.as_ptr(), unit.suffix);
+                    let convert = || spec.values.iter().map(|value| unit.to_si(*value)).collect();
+                    known_values.entry(key).or_insert_with(convert).clone()
+                }
                 None => spec.values.clone(),
             };
             if let Some(i) = values.iter().position(|v| !(known.min..=known.max).contains(v)) {

@@ -52,19 +52,19 @@ impl Simulation {
     /// # Errors
     /// [`RunError::UnknownName`] with similar names.
     pub fn channel(&self, name: &str) -> Result<ChannelId, RunError> {
-        let names = || self.plan.channels.iter().map(|channel| channel.name.as_str());
+        let names = || self.plan.channels().iter().map(|channel| channel.name.as_str());
         let index = names().position(|channel| channel == name);
         index.map(ChannelId::from_index).ok_or_else(|| unknown("channel", name, names()))
     }
 
     /// The present value of a channel, SI.
     pub fn get(&self, id: ChannelId) -> f64 {
-        channels::value(&self.plan, &self.state, self.plan.sources[id.index()])
+        channels::value(&self.plan, &self.state, self.plan.sources()[id.index()])
     }
 
     /// Writes the present values of all channels.
     pub fn fill_row(&self, row: &mut [f64]) {
-        for (value, source) in row.iter_mut().zip(&self.plan.sources) {
+        for (value, source) in row.iter_mut().zip(self.plan.sources()) {
             *value = channels::value(&self.plan, &self.state, *source);
         }
     }
