@@ -77,7 +77,7 @@ impl Builder<'_> {
                 "ground" => "`ground` is what surrounds the pipes: give this another id",
                 _ => "something else has the same name: give one of the two another id",
             };
-            self.report(format!("{what}: {doubled}"), place.span.clone(), Some(hint.to_owned()));
+            self.report(format!("{what}: {doubled}"), place.span.range(), Some(hint.to_owned()));
             doubled.id
         })
     }
@@ -113,7 +113,7 @@ impl Builder<'_> {
                     format!("{what} \"{id}\" has the name of {} {before}", article(before))
                 };
                 let hint = "give one of them another id".to_owned();
-                self.report(message, place.span.clone(), Some(hint));
+                self.report(message, place.span.range(), Some(hint));
             }
         }
     }

@@ -1,15 +1,17 @@
 //! A model text as a tree of values that remember their place; TOML or JSON.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use serde_json::{Map, Value};
+use crate::span::Span;
+use serde_json::{Map, Number, Value};
+use smol_str::SmolStr;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// A value with its place in the text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tree {
-    /// Bytes of the text; `None` when the value did not come from a text.
-    pub span: Option<Range<usize>>,
+    /// Where it stands in the text.
+    pub span: Span,
     /// What it is.
     pub kind: TreeKind,
 }
@@ -21,39 +23,71 @@ pub enum TreeKind {
     Table(Vec<(Key, Tree)>),
     /// Elements in order.
     Array(Vec<Tree>),
-    /// A string, number or boolean.
-    Scalar(Value),
+    /// A single value.
+    Scalar(Scalar),
+}
+
+/// A single value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Scalar {
+    /// A string.
+    Text(SmolStr),
+    /// A number.
+    Number(Number),
+    /// A boolean.
+    Flag(bool),
+    /// None of these: it has been reported.
+    Nothing,
+}
+
+impl From<&Value> for Scalar {
+    fn from(value: &Value) -> Self {
+        match value {
+            Value::String(text) => Self::Text(text.into()),
+            Value::Number(number) => Self::Number(number.clone()),
+            Value::Bool(flag) => Self::Flag(*flag),
+            _ => Self::Nothing,
+        }
+    }
+}
+
+impl From<&Scalar> for Value {
+    fn from(scalar: &Scalar) -> Self {
+        match scalar {
+            Scalar::Text(text) => Self::String(text.to_string()),
+            Scalar::Number(number) => Self::Number(number.clone()),
+            Scalar::Flag(flag) => Self::Bool(*flag),
+            Scalar::Nothing => Self::Null,
+        }
+    }
 }
 
 /// A key with its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Key {
     /// The word.
-    pub name: String,
-    /// Bytes of the text.
-    pub span: Option<Range<usize>>,
+    pub name: SmolStr,
+    /// Where it stands in the text.
+    pub span: Span,
 }
 
 impl Tree {
     /// A table made by the program, at the place of what it was made from.
-    pub fn table(span: Option<Range<usize>>, entries: Vec<(&str, Value)>) -> Self {
+    pub fn table(span: Span, entries: Vec<(&str, Value)>) -> Self {
         let entries = entries
             .into_iter()
-            .map(|(name, value)| {
-                let key = Key { name: name.to_owned(), span: span.clone() };
-                (key, Self::from_json(&value, span.as_ref()))
-            })
+            .map(|(name, value)| (Key { name: name.into(), span }, Self::from_json(&value, span)))
             .collect();
         Self { span, kind: TreeKind::Table(entries) }
     }
 
     /// A JSON value; every part gets the same place.
-    pub fn from_json(value: &Value, span: Option<&Range<usize>>) -> Self {
+    pub fn from_json(value: &Value, span: Span) -> Self {
         let kind = match value {
             Value::Object(map) => TreeKind::Table(
                 map.iter()
                     .map(|(name, value)| {
-                        let key = Key { name: name.clone(), span: span.cloned() };
+                        let key = Key { name: name.into(), span };
                         (key, Self::from_json(value, span))
                     })
                     .collect(),
@@ -61,19 +95,19 @@ impl Tree {
             Value::Array(items) => {
                 TreeKind::Array(items.iter().map(|item| Self::from_json(item, span)).collect())
             }
-            scalar => TreeKind::Scalar(scalar.clone()),
+            scalar => TreeKind::Scalar(scalar.into()),
         };
-        Self { span: span.cloned(), kind }
+        Self { span, kind }
     }
 
     /// The value without places.
     pub fn to_json(&self) -> Value {
         match &self.kind {
             TreeKind::Table(entries) => Value::Object(
-                entries.iter().map(|(key, tree)| (key.name.clone(), tree.to_json())).collect(),
+                entries.iter().map(|(key, tree)| (key.name.to_string(), tree.to_json())).collect(),
             ),
             TreeKind::Array(items) => Value::Array(items.iter().map(Self::to_json).collect()),
-            TreeKind::Scalar(value) => value.clone(),
+            TreeKind::Scalar(scalar) => scalar.into(),
         }
     }
 
@@ -93,7 +127,7 @@ impl Tree {
     /// The string value of a key.
     pub fn text(&self, name: &str) -> Option<&str> {
         match &self.get(name)?.kind {
-            TreeKind::Scalar(Value::String(text)) => Some(text),
+            TreeKind::Scalar(Scalar::Text(text)) => Some(text),
             _ => None,
         }
     }
@@ -121,10 +155,10 @@ impl Tree {
         match &self.kind {
             TreeKind::Table(_) => "a table",
             TreeKind::Array(_) => "an array",
-            TreeKind::Scalar(Value::String(_)) => "a string",
-            TreeKind::Scalar(Value::Number(_)) => "a number",
-            TreeKind::Scalar(Value::Bool(_)) => "a boolean",
-            TreeKind::Scalar(_) => "nothing",
+            TreeKind::Scalar(Scalar::Text(_)) => "a string",
+            TreeKind::Scalar(Scalar::Number(_)) => "a number",
+            TreeKind::Scalar(Scalar::Flag(_)) => "a boolean",
+            TreeKind::Scalar(Scalar::Nothing) => "nothing",
         }
     }
 }
@@ -151,12 +185,12 @@ fn convert_table(table: &DeTable<'_>, span: Range<usize>, problems: &mut Vec<Dia
     let entries = table
         .iter()
         .map(|(key, value)| {
-            let name = key.get_ref().to_string();
+            let name = SmolStr::new(key.get_ref());
             let tree = convert(value.get_ref(), value.span(), &name, problems);
-            (Key { name, span: Some(key.span()) }, tree)
+            (Key { name, span: key.span().into() }, tree)
         })
         .collect();
-    Tree { span: Some(span), kind: TreeKind::Table(entries) }
+    Tree { span: span.into(), kind: TreeKind::Table(entries) }
 }
 
 fn convert(
@@ -167,31 +201,34 @@ fn convert(
 ) -> Tree {
     let mut wrong = |what: String| {
         problems.push(Diagnostic::new(format!("{name} = {what}"), Some(span.clone())));
-        Value::Null
+        Scalar::Nothing
     };
     let scalar = match value {
-        DeValue::String(text) => Value::String(text.to_string()),
-        DeValue::Boolean(flag) => Value::Bool(*flag),
+        DeValue::String(text) => Scalar::Text(text.as_ref().into()),
+        DeValue::Boolean(flag) => Scalar::Flag(*flag),
         DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .map_or_else(|_| wrong(format!("{integer} is too large a number")), Value::from),
+            .map_or_else(
+                |_| wrong(format!("{integer} is too large a number")),
+                |integer| Scalar::Number(integer.into()),
+            ),
         DeValue::Float(float) => {
-            let number = float.as_str().parse::<f64>().ok().and_then(serde_json::Number::from_f64);
+            let number = float.as_str().parse::<f64>().ok().and_then(Number::from_f64);
             number.map_or_else(
                 || wrong(format!("{} is not a finite number", float.as_str())),
-                Value::Number,
+                Scalar::Number,
             )
         }
-        DeValue::Datetime(datetime) => Value::String(datetime.to_string()),
+        DeValue::Datetime(datetime) => Scalar::Text(datetime.to_string().into()),
         DeValue::Array(items) => {
             let items = items
                 .iter()
                 .map(|item| convert(item.get_ref(), item.span(), name, problems))
                 .collect();
-            return Tree { span: Some(span), kind: TreeKind::Array(items) };
+            return Tree { span: span.into(), kind: TreeKind::Array(items) };
         }
         DeValue::Table(table) => return convert_table(table, span, problems),
     };
-    Tree { span: Some(span), kind: TreeKind::Scalar(scalar) }
+    Tree { span: span.into(), kind: TreeKind::Scalar(scalar) }
 }
 
 /// Writes a JSON object as TOML text.
@@ -215,7 +252,7 @@ mod tests {
         let edges = tree.get("edge").unwrap();
         let TreeKind::Array(items) = &edges.kind else { panic!() };
         let length = items[0].get("length_m").unwrap();
-        assert_eq!(&text[length.span.clone().unwrap()], "2_00.5");
+        assert_eq!(&text[length.span.range().unwrap()], "2_00.5");
         assert_eq!(length.to_json(), Value::from(200.5));
         assert_eq!(tree.get("run").unwrap().text("step"), Some("1s"));
     }

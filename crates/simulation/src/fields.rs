@@ -97,7 +97,7 @@ impl Reader {
         let mut table = SiTable::default();
         if !matches!(tree.kind, TreeKind::Table(_)) {
             let message = format!("{what} must be a table, not {}", tree.type_name());
-            let problem = Diagnostic::new(message, tree.span.clone());
+            let problem = Diagnostic::new(message, tree.span.range());
             self.report(match &tree.kind {
                 TreeKind::Array(_) => problem.with_hint(format!("write {what} in single brackets")),
                 _ => problem.with_hint("a table is a section of its own or { field = value, ... }"),
@@ -106,17 +106,19 @@ impl Reader {
         }
         let mut meant = Vec::new();
         for (key, value) in tree.entries() {
-            let Some((si, unit)) = grammar.field(&key.name) else {
-                meant.extend(self.report_unknown(what, &key.name, key.span.clone(), grammar, also));
+            let Some(spelling) = grammar.spelling(&key.name) else {
+                meant.extend(self.report_unknown(what, &key.name, key.span.range(), grammar, also));
                 continue;
             };
-            if let Some(other) = table.fields.iter().find(|other| other.si == si) {
-                let message = format!("{what}: {} and {} are the same field", key.name, other.name);
-                self.report(Diagnostic::new(message, key.span.clone()).with_hint("give only one"));
+            let si = spelling.si.as_str();
+            if let Some(other) = table.fields.iter().find(|other| other.si() == si) {
+                let message =
+                    format!("{what}: {} and {} are the same field", key.name, other.name());
+                self.report(Diagnostic::new(message, key.span.range()).with_hint("give only one"));
                 continue;
             }
             let written = value.to_json();
-            let si_value = match unit {
+            let si_value = match spelling.unit {
                 None => Some(written.clone()),
                 Some(unit) => converted(&written, unit),
             };
@@ -124,18 +126,16 @@ impl Reader {
                 meant.push(si.to_owned());
                 let message =
                     format!("{what}: {} is too large a number", named(&key.name, &written));
-                self.report(Diagnostic::new(message, value.span.clone()));
+                self.report(Diagnostic::new(message, value.span.range()));
                 continue;
             };
-            let si = si.to_owned();
-            table.values.insert(si.clone(), si_value.clone());
-            let (name, span) = (key.name.clone(), value.span.clone());
-            table.fields.push(WrittenField { si, name, value: written, si_value, span });
+            table.values.insert(si.to_owned(), si_value);
+            table.fields.push(WrittenField::new(spelling, written, value.span));
         }
         for name in &grammar.required {
             let tried = meant.contains(name) || table.values.contains_key(name);
             if !tried {
-                self.report_missing(what, name, tree.span.clone());
+                self.report_missing(what, name, tree.span.range());
             }
         }
         table
@@ -194,13 +194,13 @@ impl Reader {
         let reason = error.inner().to_string();
         let reason = reason.split(" at line ").next().unwrap_or_default();
         let Some((name, found, whole)) = part_of(tree, table, error.path()) else {
-            self.report(Diagnostic::new(format!("{what}: {reason}"), tree.span.clone()));
+            self.report(Diagnostic::new(format!("{what}: {reason}"), tree.span.range()));
             return;
         };
         let value = found.to_json();
         let subject = if whole { named(name, &value) } else { format!("{name}: {value}") };
         let (message, hint) = type_error(&subject, &value, reason);
-        let problem = Diagnostic::new(format!("{what}: {message}"), found.span.clone());
+        let problem = Diagnostic::new(format!("{what}: {message}"), found.span.range());
         self.report(match hint {
             Some(hint) => problem.with_hint(hint),
             None => problem,
@@ -213,8 +213,8 @@ impl Reader {
 fn part_of<'t>(tree: &'t Tree, table: &SiTable, path: &Path) -> Option<(&'t str, &'t Tree, bool)> {
     let mut segments = path.iter();
     let Some(Segment::Map { key }) = segments.next() else { return None };
-    let written = table.fields.iter().find(|written| written.si == *key)?;
-    let (key, value) = tree.entries().iter().find(|(key, _)| key.name == written.name)?;
+    let written = table.fields.iter().find(|written| written.si() == key)?;
+    let (key, value) = tree.entries().iter().find(|(key, _)| key.name == written.name())?;
     let (mut found, mut whole) = (value, true);
     for segment in segments {
         found = match (segment, &found.kind) {
@@ -229,7 +229,7 @@ fn part_of<'t>(tree: &'t Tree, table: &SiTable, path: &Path) -> Option<(&'t str,
 
 /// Converts a number, or all numbers of an array; leaves other values for the type check. `None` when a
 /// number is infinite in SI.
-fn converted(value: &Value, unit: Unit) -> Option<Value> {
+pub(crate) fn converted(value: &Value, unit: Unit) -> Option<Value> {
     match value {
         Value::Number(number) => {
             let si = unit.to_si(number.as_f64()?);

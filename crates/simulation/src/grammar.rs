@@ -18,8 +18,34 @@ pub struct Grammar {
     pub fields: Vec<String>,
     /// Those without a default.
     pub required: Vec<String>,
-    /// Every name a field can be written with: its place in `fields`, and the unit to convert from.
-    spellings: HashMap<String, (usize, Option<Unit>)>,
+    /// Every name a field can be written with.
+    spellings: HashMap<&'static str, &'static Spelling>,
+}
+
+/// A name that a field can be written with.
+#[derive(Debug, PartialEq)]
+pub struct Spelling {
+    /// The SI name of the field.
+    pub si: String,
+    /// The name in the file.
+    pub name: String,
+    /// The unit to convert from; `None` for SI.
+    pub unit: Option<Unit>,
+}
+
+impl Spelling {
+    /// A spelling for the rest of the process: those of the grammars, which are made once.
+    fn kept(si: &str, name: &str, unit: Option<Unit>) -> &'static Self {
+        Box::leak(Box::new(Self { si: si.to_owned(), name: name.to_owned(), unit }))
+    }
+
+    /// A word that is written in one way only, such as `id`.
+    pub fn word(word: &'static str) -> &'static Self {
+        static WORDS: Mutex<BTreeMap<&'static str, &'static Spelling>> =
+            Mutex::new(BTreeMap::new());
+        let mut words = WORDS.lock().unwrap_or_else(PoisonError::into_inner);
+        words.entry(word).or_insert_with(|| Self::kept(word, word, None))
+    }
 }
 
 /// The parameters of a registry: one kind of entry per word of `kind`.
@@ -93,14 +119,20 @@ impl Grammar {
     }
 
     fn new(fields: Vec<String>, required: Vec<String>) -> Self {
-        let mut spellings = HashMap::new();
-        for (i, field) in fields.iter().enumerate() {
+        let mut spellings: HashMap<&str, &Spelling> = HashMap::new();
+        // A field's own name is no other field in another unit.
+        for field in &fields {
+            let own = Spelling::kept(field, field, None);
+            spellings.insert(&own.name, own);
+        }
+        for field in &fields {
             for (name, unit) in alternatives(field) {
-                spellings.entry(name).or_insert((i, Some(unit)));
+                if !spellings.contains_key(name.as_str()) {
+                    let other = Spelling::kept(field, &name, Some(unit));
+                    spellings.insert(&other.name, other);
+                }
             }
         }
-        // A field's own name is no other field in another unit.
-        spellings.extend(fields.iter().enumerate().map(|(i, field)| (field.clone(), (i, None))));
         Self { fields, required, spellings }
     }
 
@@ -111,9 +143,13 @@ impl Grammar {
     }
 
     /// The SI field that a name in the file means, and the unit to convert from.
-    pub fn field(&self, name: &str) -> Option<(&str, Option<Unit>)> {
-        let (i, unit) = self.spellings.get(name)?;
-        Some((&self.fields[*i], *unit))
+    pub fn field(&self, name: &str) -> Option<(&'static str, Option<Unit>)> {
+        self.spelling(name).map(|spelling| (spelling.si.as_str(), spelling.unit))
+    }
+
+    /// The spelling of a field that a name in the file is.
+    pub fn spelling(&self, name: &str) -> Option<&'static Spelling> {
+        self.spellings.get(name).copied()
     }
 
     /// All names a field can be written with, SI first.

@@ -9,6 +9,7 @@ use crate::model_file::{
     GroundEntry, InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry,
     RunEntry, WorstPointEntry,
 };
+pub use crate::place::{Place, WrittenField};
 use crate::table::Tables;
 use anergy_control::controllers::{ControllerParams, ports};
 use anergy_control::sensor::SensorEntry;
@@ -16,64 +17,8 @@ use anergy_core::medium::Medium;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-
-/// A field as it was written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WrittenField {
-    /// Its SI name.
-    pub si: String,
-    /// Its name in the file.
-    pub name: String,
-    /// Its value in the file.
-    pub value: Value,
-    /// Its value in SI.
-    pub si_value: Value,
-    /// The place of the value.
-    pub span: Option<Range<usize>>,
-}
-
-/// Where an entry and its fields stand in the model text, and how they are written there.
-#[derive(Debug, Clone, Default)]
-pub struct Place {
-    /// What the user wrote, in words: `edge "p1" (pipe)`, or the composite it comes from, such as
-    /// `trench "a-b"`. Empty for what does not come from a file.
-    pub entry: String,
-    /// The whole entry.
-    pub span: Option<Range<usize>>,
-    /// The fields that were given.
-    pub fields: Vec<WrittenField>,
-}
-
-/// Two entries are the same wherever they stand.
-impl PartialEq for Place {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
-}
-
-impl Place {
-    /// The place of a field, or of the entry.
-    pub fn of(&self, field: &str) -> Option<Range<usize>> {
-        self.fields
-            .iter()
-            .find(|written| written.si == field)
-            .and_then(|written| written.span.clone())
-            .or_else(|| self.span.clone())
-    }
-
-    /// What the user wrote, or `otherwise` where there is no file.
-    pub fn entry_or<'a>(&'a self, otherwise: &'a str) -> &'a str {
-        if self.entry.is_empty() { otherwise } else { &self.entry }
-    }
-
-    /// Whether a field was given.
-    pub fn has(&self, field: &str) -> bool {
-        self.fields.iter().any(|written| written.si == field)
-    }
-}
 
 /// A node.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,6 +5,7 @@ use crate::diagnostic::Diagnostics;
 use crate::document::to_toml;
 use crate::model::{Model, Place};
 use crate::model_file::{FluidEntry, GroundEntry};
+use crate::span::Span;
 use anergy_network::elements::ElementParams;
 use serde_json::{Map, Value, json};
 
@@ -210,9 +211,9 @@ fn collect(
     let properties = schema.get("properties").and_then(Value::as_object);
     for (field, property) in properties.into_iter().flatten() {
         // What a composite filled in stands at the place of the whole entry.
-        let given = place.fields.iter().find(|written| written.si == *field);
+        let given = place.fields.iter().find(|written| written.si() == field);
         let source = match given {
-            Some(written) if written.span.is_some() && written.span == place.span => {
+            Some(written) if written.span != Span::NONE && written.span == place.span => {
                 let others = [", circulation_pump", ", generator"];
                 if others.iter().any(|part| place.entry.ends_with(part))
                     || place.entry.starts_with("three_way_valve")

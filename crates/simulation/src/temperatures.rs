@@ -64,13 +64,13 @@ impl Temperatures {
     pub(crate) fn unit_hint(&self, field: &str, place: &Place) -> Option<String> {
         let (min_k, max_k) = self.range_k();
         let inside = |t_k: f64| (min_k..=max_k).contains(&t_k);
-        let written = place.fields.iter().find(|written| written.si == field)?;
-        let value = written.value.as_f64()?;
+        let written = place.fields.iter().find(|written| written.si() == field)?;
+        let value = written.value().as_f64()?;
         let stem = field.strip_suffix("_k").filter(|stem| !is_difference(stem))?;
-        let celsius = written.name.ends_with("_degc");
+        let celsius = written.name().ends_with("_degc");
         let (unit, other, other_k) =
             if celsius { ("degC", "k", value) } else { ("K", "degc", value + ZERO_CELSIUS_K) };
-        let meant = written.si_value.as_f64().is_some_and(|t_k| !inside(t_k)) && inside(other_k);
+        let meant = written.si_value().as_f64().is_some_and(|t_k| !inside(t_k)) && inside(other_k);
         meant.then(|| format!("{value} was read in {unit}; did you mean {stem}_{other} = {value}?"))
     }
 }
@@ -78,16 +78,19 @@ impl Temperatures {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grammar::Grammar;
     use crate::model::WrittenField;
+    use crate::span::Span;
+    use anergy_network::elements::ElementParams;
     use serde_json::json;
 
     #[test]
     fn the_other_unit_is_suggested_where_it_fits() {
         let said = |name: &str, value: f64, si_value: f64| {
-            let (si, name) = ("surroundings_k".to_owned(), name.to_owned());
-            let (value, json) = (json!(value), json!(si_value));
-            let fields = vec![WrittenField { si, name, value, si_value: json, span: None }];
-            let place = Place { fields, ..Place::default() };
+            let grammar = Grammar::of_kind::<ElementParams>("pipe").unwrap();
+            let spelling = grammar.spelling(name).unwrap();
+            let field = WrittenField::new(spelling, json!(value), Span::NONE);
+            let place = Place { fields: [field].into(), ..Place::default() };
             SURROUNDINGS.problem("pipe", "surroundings_k", si_value, &place)
         };
         let kelvin = said("surroundings_k", 20.0, 20.0).unwrap();

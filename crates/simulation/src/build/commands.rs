@@ -69,7 +69,7 @@ impl Builder<'_> {
                 shared.initial
             );
             let hint = "valves that share a command need the same initial one".to_owned();
-            self.report(message, edge.place.span.clone(), Some(hint));
+            self.report(message, edge.place.span.range(), Some(hint));
         }
     }
 }

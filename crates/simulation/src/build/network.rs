@@ -250,7 +250,7 @@ impl Builder<'_> {
                     spec.id, spec.port
                 );
                 let hint = "give the site a second station, or one of the units another one";
-                self.report(message, spec.place.span.clone(), Some(hint.into()));
+                self.report(message, spec.place.span.range(), Some(hint.into()));
             }
             let params = &self.model.edges[edge].params;
             // A heat source takes whatever flow there is, the others want one of their own.
@@ -306,7 +306,7 @@ impl Builder<'_> {
                 format!("node \"{}\"", spec.entry.id)
             };
             let hint = "join it with a [[trench]] or an [[edge]], or take it out";
-            let problem = Diagnostic::new(format!("{what} has no edge"), spec.place.span.clone());
+            let problem = Diagnostic::new(format!("{what} has no edge"), spec.place.span.range());
             found.push(problem.with_hint(hint));
         }
         for problem in network.problems() {
@@ -326,7 +326,7 @@ impl Builder<'_> {
                             "the circuit of {}{more} has no pressure reference",
                             names.join(", ")
                         ),
-                        self.model.nodes[circuit[0].index()].place.span.clone(),
+                        self.model.nodes[circuit[0].index()].place.span.range(),
                     )
                     .with_hint(format!("add [[pressure_reference]] with node = \"{}\"", names[0]))
                 }
@@ -359,7 +359,7 @@ impl Builder<'_> {
                         "edge \"{}\" closes a loop of pressure sources and fixed pressures alone",
                         self.model.edges[edge.index()].id
                     ),
-                    self.model.edges[edge.index()].place.span.clone(),
+                    self.model.edges[edge.index()].place.span.range(),
                 )
                 .with_hint("put a resistance into the loop"),
                 GraphProblem::OverDetermined { equations } => self.over_determined(&equations),

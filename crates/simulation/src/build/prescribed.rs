@@ -133,7 +133,7 @@ impl Builder<'_> {
             "too much is prescribed: {} determine each other, none can be chosen freely",
             parts.join(", ")
         );
-        let place = given.last().and_then(|spec| spec.place.span.clone());
+        let place = given.last().and_then(|spec| spec.place.span.range());
         Diagnostic::new(message, place)
             .with_hint("take out one of these prescriptions, or free an actuator in this part")
     }

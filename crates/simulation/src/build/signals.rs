@@ -100,7 +100,7 @@ impl Builder<'_> {
                 .and_then(|_| commands[edge]);
             if let Some(command) = imposes_flow {
                 let what = format!("unit \"{}\"", spec.id);
-                writers.insert(command, Writer { what, span: spec.place.span.clone() });
+                writers.insert(command, Writer { what, span: spec.place.span.range() });
             }
             let states = equipment.initial_state(self.model.run.initial_k).len();
             let outputs = equipment.outputs().len();
@@ -178,7 +178,7 @@ impl Builder<'_> {
             });
             let Some(times) = times else {
                 let message = format!("{}: a time is beyond what can be simulated", spec.source);
-                self.report(message, spec.place.span.clone(), None);
+                self.report(message, spec.place.span.range(), None);
                 continue;
             };
             drivers.push(Driver { signal, interpolation: spec.interpolation, times, values });

@@ -15,8 +15,9 @@
 
 use super::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
 use crate::document::{Key, Tree, TreeKind};
+use crate::span::Span;
 use serde_json::{Value, json};
-use std::ops::Range;
+use smol_str::{SmolStr, format_smolstr};
 
 /// A node or edge to be read, and what it belongs to.
 #[derive(Debug, Clone)]
@@ -24,9 +25,9 @@ pub(super) struct Plain {
     /// The entry as a table.
     pub tree: Tree,
     /// Its site (nodes) or station (edges); empty for none.
-    pub owner: String,
+    pub owner: SmolStr,
     /// What the user wrote where that is a composite, for messages: `trench "a-b"`; empty for others.
-    pub entry: String,
+    pub entry: SmolStr,
 }
 
 impl Plain {
@@ -37,7 +38,7 @@ impl Plain {
 }
 
 /// The nodes of a site.
-pub(super) fn site_nodes(site: &SiteEntry, span: Option<&Range<usize>>) -> Vec<Plain> {
+pub(super) fn site_nodes(site: &SiteEntry, span: Span) -> Vec<Plain> {
     site.lines
         .iter()
         .map(|line| {
@@ -48,9 +49,9 @@ pub(super) fn site_nodes(site: &SiteEntry, span: Option<&Range<usize>>) -> Vec<P
             entries.extend(site.x_m.map(|x| ("x_m", json!(x))));
             entries.extend(site.y_m.map(|y| ("y_m", json!(y))));
             Plain {
-                tree: Tree::table(span.cloned(), entries),
-                owner: site.id.clone(),
-                entry: format!("site \"{}\"", site.id),
+                tree: Tree::table(span, entries),
+                owner: (&site.id).into(),
+                entry: format_smolstr!("site \"{}\"", site.id),
             }
         })
         .collect()
@@ -78,9 +79,9 @@ pub(super) fn trench_pipes(
             {
                 entries.push(("companion", json!(format!("{id}.{second}"))));
             }
-            let mut tree = Tree::table(fields.span.clone(), entries);
+            let mut tree = Tree::table(fields.span, entries);
             tree.fill_from(fields);
-            Plain { tree, owner: String::new(), entry: format!("trench \"{id}\"") }
+            Plain { tree, owner: SmolStr::default(), entry: format_smolstr!("trench \"{id}\"") }
         })
         .collect()
 }
@@ -238,21 +239,21 @@ pub(super) fn station(
         .iter()
         .map(|name| Plain {
             tree: Tree::table(
-                tree.span.clone(),
+                tree.span,
                 vec![("id", json!(inner(name))), ("elevation_m", json!(site.elevation_m))],
             ),
-            owner: site.id.clone(),
-            entry: what.clone(),
+            owner: (&site.id).into(),
+            entry: (&what).into(),
         })
         .collect();
     let edges = parts
         .iter()
         .map(|part| Plain {
             tree: part.tree(tree, &prefix),
-            owner: id.clone(),
+            owner: (&id).into(),
             entry: match part.fields {
-                "" => what.clone(),
-                fields => format!("{what}, {fields}"),
+                "" => (&what).into(),
+                fields => format_smolstr!("{what}, {fields}"),
             },
         })
         .collect();
@@ -279,7 +280,7 @@ impl Part {
     /// The part as an edge entry: what the station's entry says, then the defaults.
     pub(super) fn tree(&self, station: &Tree, prefix: &str) -> Tree {
         let mut tree = Tree::table(
-            station.span.clone(),
+            station.span,
             vec![
                 ("id", json!(format!("{prefix}.{}", self.name))),
                 ("kind", json!(self.kind)),
@@ -290,8 +291,8 @@ impl Part {
         if self.name == "stub_hot"
             && let TreeKind::Table(entries) = &mut tree.kind
         {
-            let stub_cold = Tree::from_json(&json!(format!("{prefix}.stub_cold")), None);
-            let key = Key { name: "companion".into(), span: None };
+            let stub_cold = Tree::from_json(&json!(format!("{prefix}.stub_cold")), Span::NONE);
+            let key = Key { name: "companion".into(), span: Span::NONE };
             entries.push((key, stub_cold));
         }
         let own = station.get(self.fields);
@@ -299,7 +300,7 @@ impl Part {
         if let Some(own) = own {
             tree.fill_from(own);
         }
-        let defaults = Tree::from_json(&self.defaults, station.span.as_ref());
+        let defaults = Tree::from_json(&self.defaults, station.span);
         fill_quantities(&mut tree, &defaults, own.is_some_and(|own| own.get("pipe").is_some()));
         tree
     }

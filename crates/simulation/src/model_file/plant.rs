@@ -14,6 +14,7 @@ use anergy_core::units::split_suffix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use smol_str::format_smolstr;
 
 /// Flow in m3/h at 1 bar of a generator of which nothing is said: practically no pressure loss.
 const GENERATOR_KV_M3_H: f64 = 1e4;
@@ -145,15 +146,15 @@ pub(super) fn plant(plant: &PlantEntry, site: &SiteEntry, tree: &Tree, what: &st
     push(&mut pump_tree, tree, "dp", "head");
     let edge = |part: &Part, tree: Tree| Plain {
         tree,
-        owner: id.clone(),
-        entry: format!("{what}, {}", part.fields),
+        owner: (&id).into(),
+        entry: format_smolstr!("{what}, {}", part.fields),
     };
     let edges = vec![edge(&pump, pump_tree), edge(&generator, generator.tree(tree, &prefix))];
     let node =
         vec![("id", json!(inner("generator_inlet"))), ("elevation_m", json!(site.elevation_m))];
     let unit_id = inner("unit");
     let mut unit = Tree::table(
-        tree.span.clone(),
+        tree.span,
         vec![
             ("id", json!(unit_id)),
             ("port", json!(inner("generator"))),
@@ -164,15 +165,15 @@ pub(super) fn plant(plant: &PlantEntry, site: &SiteEntry, tree: &Tree, what: &st
         push(&mut unit, tree, field, field);
     }
     let reference = plant.return_pressure_pa.map(|_| {
-        let mut reference = Tree::table(tree.span.clone(), vec![("node", json!(cold))]);
+        let mut reference = Tree::table(tree.span, vec![("node", json!(cold))]);
         push(&mut reference, tree, "return_pressure", "pressure");
         reference
     });
     Plant {
         nodes: vec![Plain {
-            tree: Tree::table(tree.span.clone(), node),
-            owner: site.id.clone(),
-            entry: what.to_owned(),
+            tree: Tree::table(tree.span, node),
+            owner: (&site.id).into(),
+            entry: what.into(),
         }],
         edges,
         interface: InterfaceEntry {
@@ -207,7 +208,7 @@ pub(super) fn worst_point(
         ("integral_time_s", json!(GAIN * plant.dp_integral_time_s)),
         ("initial_output", json!(dp_pa)),
     ];
-    (Tree::table(tree.span.clone(), point), Tree::table(tree.span.clone(), controller))
+    (Tree::table(tree.span, point), Tree::table(tree.span, controller))
 }
 
 fn stem(name: &str) -> &str {
@@ -222,7 +223,7 @@ fn push(to: &mut Tree, from: &Tree, quantity: &str, name: &str) {
         .find(|(key, _)| split_suffix(&key.name).is_some_and(|(stem, _)| stem == quantity));
     if let (Some((key, value)), TreeKind::Table(entries)) = (written, &mut to.kind) {
         let suffix = split_suffix(&key.name).map_or("", |(_, suffix)| suffix);
-        let key = Key { name: format!("{name}_{suffix}"), span: key.span.clone() };
+        let key = Key { name: format_smolstr!("{name}_{suffix}"), span: key.span };
         entries.push((key, value.clone()));
     }
 }

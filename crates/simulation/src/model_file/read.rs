@@ -17,6 +17,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::document::{Tree, TreeKind};
 use crate::fields::{Reader, SiTable};
 use crate::model::*;
+use crate::span::Span;
 use crate::table::Tables;
 use crate::temperatures::Temperatures;
 use crate::wording::refused;
@@ -142,8 +143,7 @@ impl ModelReader<'_> {
         let mut stations = self.stations(&mut nodes, &mut edges, &mut interfaces);
         self.hold_worst_consumers(&stations);
         self.three_way_valves(&mut edges);
-        let plain =
-            |tree: &Tree| Plain { tree: tree.clone(), owner: String::new(), entry: String::new() };
+        let plain = |tree: &Tree| Plain { tree: tree.clone(), owner: "".into(), entry: "".into() };
         nodes.extend(self.items("node").iter().map(plain));
         edges.extend(self.items("edge").iter().map(plain));
         let types = self.pipe_types();
@@ -193,12 +193,12 @@ impl ModelReader<'_> {
                 let hint = did_you_mean(&key.name, SECTIONS.iter().copied())
                     .unwrap_or_else(|| format!("known sections: {}", SECTIONS.join(", ")));
                 self.reader.report(
-                    Diagnostic::new(format!("unknown section `{}`", key.name), key.span.clone())
+                    Diagnostic::new(format!("unknown section `{}`", key.name), key.span.range())
                         .with_hint(hint),
                 );
             }
         }
-        match self.tree.get("format").map(|tree| (tree.to_json(), tree.span.clone())) {
+        match self.tree.get("format").map(|tree| (tree.to_json(), tree.span.range())) {
             Some((value, _)) if value == 1 => {}
             Some((value, span)) => self.reader.report(
                 Diagnostic::new(format!("format = {value} is not known"), span)
@@ -216,7 +216,7 @@ impl ModelReader<'_> {
     where
         T: serde::de::DeserializeOwned + JsonSchema + 'static,
     {
-        let empty = Tree { span: None, kind: TreeKind::Table(Vec::new()) };
+        let empty = Tree { span: Span::NONE, kind: TreeKind::Table(Vec::new()) };
         let tree = self.tree.get(section).unwrap_or(&empty);
         let what = format!("[{section}]");
         let (entry, table) = self.reader.read(&what, tree)?;
@@ -239,7 +239,7 @@ impl ModelReader<'_> {
                     self.reader.report(
                         Diagnostic::new(
                             format!("`{section}` can occur several times"),
-                            tree.span.clone(),
+                            tree.span.range(),
                         )
                         .with_hint(format!("write [[{section}]] with double brackets")),
                     );
@@ -274,7 +274,7 @@ impl ModelReader<'_> {
             let read = self.reader.read::<ScheduleEntry>(&what, &tree);
             let Some((entry, table)) = read else { continue };
             let (times_s, values): (Vec<f64>, Vec<f64>) = entry.points.iter().copied().unzip();
-            let span = tree.get("points").and_then(|tree| tree.span.clone());
+            let span = tree.get("points").and_then(|tree| tree.span.range());
             if times_s.is_empty() {
                 self.reader.report(Diagnostic::new(format!("{what} has no points"), span));
                 continue;
@@ -371,5 +371,5 @@ impl ModelReader<'_> {
 }
 
 fn place(what: &str, tree: &Tree, table: &SiTable) -> Place {
-    Place { entry: what.to_owned(), span: tree.span.clone(), fields: table.fields.clone() }
+    Place { entry: what.into(), span: tree.span, fields: table.fields.as_slice().into() }
 }

@@ -36,7 +36,7 @@ impl Problem {
     }
 
     fn diagnostic(self, tree: &Tree) -> Diagnostic {
-        let span = tree.get(self.field).and_then(|tree| tree.span.clone());
+        let span = tree.get(self.field).and_then(|tree| tree.span.range());
         let problem = Diagnostic::new(self.message, span);
         match self.hint {
             Some(hint) => problem.with_hint(hint),

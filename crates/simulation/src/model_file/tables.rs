@@ -9,6 +9,7 @@ mod columns;
 use super::{comma, two_lines};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Tree, TreeKind};
+use crate::span::Span;
 use crate::table::{Table, Tables};
 use anergy_core::units::split_suffix;
 use columns::{guess, is_site_field, known};
@@ -89,7 +90,7 @@ impl TableReader<'_> {
     }
 
     fn try_read(&mut self, content: Content, file: &str, named: &Tree, rows: &mut Rows) {
-        let refused = |message: String| Diagnostic::new(message, named.span.clone());
+        let refused = |message: String| Diagnostic::new(message, named.span.range());
         let Some(separator) = separator_byte(self.entry.separator) else { return };
         let bytes = match std::fs::read(self.dir.join(file)) {
             Ok(bytes) => bytes,
@@ -130,7 +131,7 @@ impl TableReader<'_> {
         let names: Vec<String> = header.iter().map(str::to_owned).collect();
         let line = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
         let lines = records.iter().map(line).collect();
-        let table = self.tables.add(self.text_end, file, names.clone(), lines, named.span.clone());
+        let table = self.tables.add(self.text_end, file, names.clone(), lines, named.span.range());
         let before = self.problems.len();
         let columns = self.columns(content, &names, &table);
         if self.problems.len() > before {
@@ -156,7 +157,7 @@ impl TableReader<'_> {
                     let entries =
                         cells.into_iter().map(|(column, cell)| entry(&column.field, cell));
                     let kind = TreeKind::Table(entries.collect());
-                    let tree = Tree { span: Some(table.row(row)), kind };
+                    let tree = Tree { span: table.row(row).into(), kind };
                     rows.entry("trench").or_default().push(tree);
                 }
             }
@@ -232,7 +233,7 @@ impl TableReader<'_> {
                 self.problems.push(problem.with_hint(hint));
                 continue;
             }
-            cells.push((column, Tree::from_json(&value, Some(&table.cell(row, i)))));
+            cells.push((column, Tree::from_json(&value, table.cell(row, i).into())));
         }
         (self.problems.len() == before).then_some(cells)
     }
@@ -250,7 +251,7 @@ impl TableReader<'_> {
                 },
                 None if is_site_field(&column.field) => {
                     if column.field == "id" {
-                        let key = Key { name: "site".into(), span: entry.0.span.clone() };
+                        let key = Key { name: "site".into(), span: entry.0.span };
                         station.push((key, entry.1.clone()));
                     }
                     site.push(entry);
@@ -258,15 +259,15 @@ impl TableReader<'_> {
                 None => station.push(entry),
             }
         }
-        let spanned = Some(span);
-        let key = |name: &str| Key { name: name.to_owned(), span: spanned.clone() };
-        let table = |entries| Tree { span: spanned.clone(), kind: TreeKind::Table(entries) };
-        site.push((key("lines"), Tree::from_json(&json!(self.entry.lines), spanned.as_ref())));
+        let spanned = Span::from(span);
+        let key = |name: &str| Key { name: name.into(), span: spanned };
+        let table = |entries| Tree { span: spanned, kind: TreeKind::Table(entries) };
+        site.push((key("lines"), Tree::from_json(&json!(self.entry.lines), spanned)));
         rows.entry("site").or_default().push(table(site));
         let with_station = station.iter().any(|(key, _)| key.name == "type");
         let given = station.iter().find(|(key, _)| !["type", "site"].contains(&key.name.as_str()));
-        let alone = given.map(|(_, tree)| tree.span.clone());
-        let alone = alone.or_else(|| parts.first().map(|(_, cells)| cells[0].1.span.clone()));
+        let alone = given.map(|(_, tree)| tree.span.range());
+        let alone = alone.or_else(|| parts.first().map(|(_, cells)| cells[0].1.span.range()));
         station.extend(parts.into_iter().map(|(name, cells)| (key(&name), table(cells))));
         if with_station {
             rows.entry("station").or_default().push(table(station));
@@ -304,7 +305,7 @@ fn example(content: Content) -> &'static str {
 
 fn entry(field: &str, cell: Tree) -> (Key, Tree) {
     let name = if field == "station" { "type" } else { field };
-    (Key { name: name.to_owned(), span: cell.span.clone() }, cell)
+    (Key { name: name.into(), span: cell.span }, cell)
 }
 
 /// Names are texts, whatever they look like.

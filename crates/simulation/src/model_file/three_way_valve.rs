@@ -7,11 +7,11 @@
 //! diverting, port a. The direction of the water is a result either way.
 
 use super::expand::Plain;
-use crate::document::{Key, Tree, TreeKind};
+use crate::document::{Key, Scalar, Tree, TreeKind};
+use crate::span::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::ops::Range;
 
 /// The own fields of a `[[three_way_valve]]`; the others are those of a valve, of both ways.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -64,7 +64,7 @@ pub(super) fn valves(entry: &ThreeWayValveEntry, own: &Tree, fields: &Tree) -> V
             ThreeWayMode::Diverting => [("from", "ab", &entry.ab), ("to", name, node)],
         };
         let mut tree = Tree::table(
-            fields.span.clone(),
+            fields.span,
             vec![
                 ("id", json!(format!("{}.{name}", entry.id))),
                 ("kind", json!("valve")),
@@ -73,29 +73,29 @@ pub(super) fn valves(entry: &ThreeWayValveEntry, own: &Tree, fields: &Tree) -> V
             ],
         );
         for (end, field, node) in ends {
-            let place = own.get(field).and_then(|tree| tree.span.clone());
+            let place = own.get(field).map_or(Span::NONE, |tree| tree.span);
             push(&mut tree, end, &json!(node), place);
         }
         if let (true, Some(characteristic)) = (of_b, &entry.characteristic_b) {
-            let place = own.get("characteristic_b").and_then(|tree| tree.span.clone());
+            let place = own.get("characteristic_b").map_or(Span::NONE, |tree| tree.span);
             push(&mut tree, "characteristic", &json!(characteristic), place);
         }
         tree.fill_from(fields);
         if tree.get("characteristic").is_none() {
-            push(&mut tree, "characteristic", &json!("linear"), fields.span.clone());
+            push(&mut tree, "characteristic", &json!("linear"), fields.span);
         }
         if of_b {
             scale_kvs(&mut tree, entry.kvs_ratio);
         }
-        Plain { tree, owner: String::new(), entry: what.clone() }
+        Plain { tree, owner: "".into(), entry: (&what).into() }
     };
     vec![way("a", &entry.a, false), way("b", &entry.b, true)]
 }
 
-fn push(tree: &mut Tree, name: &str, value: &Value, span: Option<Range<usize>>) {
-    let value = Tree::from_json(value, span.as_ref());
+fn push(tree: &mut Tree, name: &str, value: &Value, span: Span) {
+    let value = Tree::from_json(value, span);
     if let TreeKind::Table(entries) = &mut tree.kind {
-        entries.push((Key { name: name.to_owned(), span }, value));
+        entries.push((Key { name: name.into(), span }, value));
     }
 }
 
@@ -103,11 +103,13 @@ fn scale_kvs(tree: &mut Tree, ratio: f64) {
     let TreeKind::Table(entries) = &mut tree.kind else { return };
     for (key, value) in entries {
         let number = match &value.kind {
-            TreeKind::Scalar(number) if key.name.starts_with("kvs_") => number.as_f64(),
+            TreeKind::Scalar(Scalar::Number(number)) if key.name.starts_with("kvs_") => {
+                number.as_f64()
+            }
             _ => None,
         };
         if let Some(number) = number.filter(|_| ratio != 1.0) {
-            value.kind = TreeKind::Scalar(json!(number * ratio));
+            value.kind = TreeKind::Scalar((&json!(number * ratio)).into());
         }
     }
 }

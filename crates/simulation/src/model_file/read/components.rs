@@ -3,8 +3,8 @@
 use super::pipe_types::{self, PipeTypes};
 use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::{Key, Tree, TreeKind};
-use crate::grammar::Registered;
+use crate::document::{Key, Scalar, Tree, TreeKind};
+use crate::grammar::{Registered, Spelling};
 use crate::model::{ControllerSpec, EdgeSpec, NodeSpec, Place, UnitSpec, WrittenField};
 use crate::model_file::expand::Plain;
 use crate::model_file::{NodeEntry, NodeEntryKind};
@@ -60,7 +60,7 @@ impl ModelReader<'_> {
         for (field, given, kinds, needed) in fields {
             let has = kinds.contains(&word);
             if has && needed && !given {
-                self.reader.report_missing(&what, field, plain.tree.span.clone());
+                self.reader.report_missing(&what, field, plain.tree.span.range());
             } else if given && !has {
                 let mut hint = format!("it belongs to kind = \"{}\"", kinds.join("\" or \""));
                 if field == "pressure_pa" && word == "junction" {
@@ -84,7 +84,7 @@ impl ModelReader<'_> {
             let message = format!("volume_m3 = {} must not be negative", entry.volume_m3);
             self.reader.report(refused(&what, &place, Some("volume_m3"), &message));
         }
-        Some(NodeSpec { entry, site: plain.owner.clone(), place })
+        Some(NodeSpec { entry, site: plain.owner.to_string(), place })
     }
 
     pub(super) fn edge(&mut self, plain: Plain, types: &PipeTypes) -> Option<EdgeSpec> {
@@ -113,34 +113,42 @@ impl ModelReader<'_> {
         }
         let (params, place) = self.parameters(words, &kind)?;
         let (from, to) = (from?, to?);
-        Some(EdgeSpec { id, from, to, params, loss_factor: 1.0, station: plain.owner, place })
+        Some(EdgeSpec {
+            id,
+            from,
+            to,
+            params,
+            loss_factor: 1.0,
+            station: plain.owner.into(),
+            place,
+        })
     }
 
     fn merge_pipe_type(&mut self, words: &mut Words, types: &PipeTypes) -> Option<()> {
         words.asked.push("pipe");
         let Some((_, name)) = words.tree.take("pipe") else { return Some(()) };
         let what = &words.what;
-        let TreeKind::Scalar(Value::String(type_name)) = &name.kind else {
+        let TreeKind::Scalar(Scalar::Text(type_name)) = &name.kind else {
             self.reader.report(
                 Diagnostic::new(
                     format!(
                         "{what}: pipe must be the name of a pipe_type, not {}",
                         name.type_name()
                     ),
-                    name.span,
+                    name.span.range(),
                 )
                 .with_hint("write for example pipe = \"dn20\", with a section [pipe_type.dn20]"),
             );
             return None;
         };
-        let own = types.get(type_name).cloned();
-        let bought = || pipe_types::bought(type_name, name.span.as_ref()).map(Some);
+        let own = types.get(type_name.as_str()).cloned();
+        let bought = || pipe_types::bought(type_name, name.span).map(Some);
         let Some(defaults) = own.or_else(bought) else {
             let hint = pipe_types::hint(type_name, types);
             self.reader.report(
                 Diagnostic::new(
                     format!("{what}: there is no pipe_type \"{type_name}\""),
-                    name.span.clone(),
+                    name.span.range(),
                 )
                 .with_hint(hint),
             );
@@ -164,12 +172,12 @@ impl ModelReader<'_> {
             let hint = "write site = \"...\" to stand behind the station of a site, or id and port \
                         (a heat_exchanger or flow_source) to stand on an edge";
             let problem =
-                Diagnostic::new("unit: it is not said where it stands", words.tree.span.clone());
+                Diagnostic::new("unit: it is not said where it stands", words.tree.span.range());
             self.reader.report(problem.with_hint(hint));
             return None;
         }
         if let Some(field) = ["id", "port"].into_iter().find(|field| of_site && given(field)) {
-            let span = words.tree.get(field).and_then(|tree| tree.span.clone());
+            let span = words.tree.get(field).and_then(|tree| tree.span.range());
             let problem = Diagnostic::new(format!("unit: site and {field} are both given"), span);
             let hint = "a unit of a site is told from others by `name`; id and port are for a unit \
                         that stands on an edge";
@@ -186,8 +194,8 @@ impl ModelReader<'_> {
                 if !stations.wrong.contains(&wanted) {
                     let message = format!("unit: there is no station \"{wanted}\"");
                     let field = if station == "station" { "site" } else { "station" };
-                    let place = words.taken.iter().find(|taken| taken.si == field);
-                    let span = place.map_or(words.tree.span.clone(), |taken| taken.span.clone());
+                    let place = words.taken.iter().find(|taken| taken.si() == field);
+                    let span = place.map_or(words.tree.span.range(), |taken| taken.span.range());
                     let hint = "add a [[station]] at that site, or name it with `station`";
                     self.reader.report(Diagnostic::new(message, span).with_hint(hint));
                 }
@@ -237,10 +245,10 @@ impl ModelReader<'_> {
         kind: &str,
     ) -> Option<(P, Place)> {
         let Words { what, tree, taken, asked } = words;
-        let (params, table) = self.reader.read_kind::<P>(&what, &tree, kind, &asked)?;
-        let mut place = place(&what, &tree, &table);
-        place.fields.extend(taken);
-        Some((params, place))
+        let (params, mut table) = self.reader.read_kind::<P>(&what, &tree, kind, &asked)?;
+        // The words of composites stand where the entry does, so nothing need be kept of them.
+        table.fields.extend(taken.into_iter().filter(|word| word.span != tree.span));
+        Some((params, place(&what, &tree, &table)))
     }
 
     fn kind<P: Registered>(&mut self, words: &mut Words) -> Option<String> {
@@ -253,11 +261,11 @@ impl ModelReader<'_> {
         words: &mut Words,
         field: &'static str,
     ) -> Option<String> {
-        let span = words.tree.get(field).and_then(|tree| tree.span.clone());
+        let span = words.tree.get(field).and_then(|tree| tree.span.range());
         let possible = format!("possible {field}s: {}", P::KINDS.join(", "));
         if words.tree.get(field).is_none() {
             let message = format!("{}: {field} is missing", words.what);
-            let problem = Diagnostic::new(message, words.tree.span.clone());
+            let problem = Diagnostic::new(message, words.tree.span.range());
             self.reader.report(problem.with_hint(possible));
             return None;
         }
@@ -279,22 +287,17 @@ impl ModelReader<'_> {
     ) -> Option<String> {
         words.asked.push(field);
         let (_, value) = words.tree.take(field)?;
-        words.taken.push(WrittenField {
-            si: field.to_owned(),
-            name: field.to_owned(),
-            value: value.to_json(),
-            si_value: value.to_json(),
-            span: value.span.clone(),
-        });
+        let word = WrittenField::new(Spelling::word(field), Value::Null, value.span);
+        words.taken.push(word);
         let what = &words.what;
         match value.kind {
-            TreeKind::Scalar(Value::String(text)) if !text.is_empty() => Some(text),
+            TreeKind::Scalar(Scalar::Text(text)) if !text.is_empty() => Some(text.into()),
             _ => {
                 let message = match value.kind {
-                    TreeKind::Scalar(Value::String(_)) => format!("{what}: {field} is empty"),
+                    TreeKind::Scalar(Scalar::Text(_)) => format!("{what}: {field} is empty"),
                     _ => format!("{what}: {field} must be a string, not {}", value.type_name()),
                 };
-                self.reader.report(Diagnostic::new(message, value.span));
+                self.reader.report(Diagnostic::new(message, value.span.range()));
                 None
             }
         }
@@ -312,7 +315,7 @@ impl ModelReader<'_> {
         if words.tree.get(field).is_none() {
             words.asked.push(field);
             let message = format!("{}: {field} is missing", words.what);
-            self.reader.report(Diagnostic::new(message, words.tree.span.clone()));
+            self.reader.report(Diagnostic::new(message, words.tree.span.range()));
             return None;
         }
         self.optional_text(words, field)

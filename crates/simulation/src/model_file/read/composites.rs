@@ -21,7 +21,7 @@ impl Stations {
         if self.edges.insert(interface.id.clone(), interface.edge.clone()).is_none() {
             return Some(());
         }
-        let problem = Diagnostic::new(format!("{what} exists twice"), tree.span.clone());
+        let problem = Diagnostic::new(format!("{what} exists twice"), tree.span.range());
         reader.reader.report(problem.with_hint("give one of them a `name`"));
         None
     }
@@ -36,7 +36,7 @@ impl ModelReader<'_> {
                 self.wrong_sites.extend(tree.text("id").map(str::to_owned));
                 continue;
             };
-            let at = |field: &str| tree.get(field).and_then(|tree| tree.span.clone());
+            let at = |field: &str| tree.get(field).and_then(|tree| tree.span.range());
             let mut wrong = |message: String, field: &str, hint: &str| {
                 self.reader.report(Diagnostic::new(message, at(field)).with_hint(hint));
             };
@@ -73,7 +73,7 @@ impl ModelReader<'_> {
                 wrong(format!("{what} exists twice"), "id", "give one of them another id");
                 continue;
             }
-            nodes.extend(expand::site_nodes(&site, tree.span.as_ref()));
+            nodes.extend(expand::site_nodes(&site, tree.span));
             self.sites.insert(site.id.clone(), site);
         }
     }
@@ -83,7 +83,7 @@ impl ModelReader<'_> {
         let name = tree.text(field)?;
         let found = self.sites.get(name).cloned();
         if found.is_none() && !self.wrong_sites.contains(name) && !self.sites_unread {
-            let span = tree.get(field).and_then(|tree| tree.span.clone());
+            let span = tree.get(field).and_then(|tree| tree.span.range());
             let problem = Diagnostic::new(format!("{what}: there is no site \"{name}\""), span);
             let hint = did_you_mean(name, self.sites.keys().map(String::as_str))
                 .unwrap_or_else(|| format!("add a [[site]] with id = \"{name}\""));
@@ -102,7 +102,7 @@ impl ModelReader<'_> {
                     *end = self.optional_text(&mut words, field);
                 } else {
                     self.reader.report(
-                        Diagnostic::new(format!("trench: {field} is missing"), tree.span.clone())
+                        Diagnostic::new(format!("trench: {field} is missing"), tree.span.range())
                             .with_hint("name the sites at its two ends"),
                     );
                 }
@@ -114,8 +114,8 @@ impl ModelReader<'_> {
             let (from, to) = (self.site(&what, &tree, "from"), self.site(&what, &tree, "to"));
             let (Some(from), Some(to)) = (from, to) else { continue };
             let at = |field: &str| {
-                let field = tree.get(field).and_then(|tree| tree.span.clone());
-                field.or_else(|| tree.span.clone())
+                let field = tree.get(field).and_then(|tree| tree.span.range());
+                field.or_else(|| tree.span.range())
             };
             let mut wrong = |message: String, field: &str, hint: &str| {
                 self.reader.report(Diagnostic::new(message, at(field)).with_hint(hint));
@@ -138,7 +138,7 @@ impl ModelReader<'_> {
                 own.into_iter().find_map(|(field, hint)| Some((fields.take(field)?.0, hint)));
             if let Some((key, hint)) = strange {
                 let message = format!("{what}: unknown field `{}`", key.name);
-                self.reader.report(Diagnostic::new(message, key.span).with_hint(hint));
+                self.reader.report(Diagnostic::new(message, key.span.range()).with_hint(hint));
                 continue;
             }
             let pipes = expand::trench_pipes(&id, (&from, &to), &fields);
@@ -213,7 +213,7 @@ impl ModelReader<'_> {
         if site.lines.len() < 2 {
             let message = format!("{what}: a station needs a site with two lines");
             let hint = format!("site \"{}\" has only {}", site.id, site.lines.join(", "));
-            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(hint));
+            self.reader.report(Diagnostic::new(message, tree.span.range()).with_hint(hint));
             return None;
         }
         Some(site)
@@ -236,20 +236,20 @@ impl ModelReader<'_> {
                     format!("the parts of a {kind} are {}", own.join(", "))
                 };
                 let message = format!("{what}: a {kind} has no {part}");
-                self.reader.report(Diagnostic::new(message, key.span.clone()).with_hint(hint));
+                self.reader.report(Diagnostic::new(message, key.span.range()).with_hint(hint));
             } else if !matches!(value.kind, TreeKind::Table(_)) {
                 let message = format!("{what}: {part} must be a table, not {}", value.type_name());
                 let hint = match (*part, tree.text(part)) {
                     ("stub", Some(name)) => format!("write stub = {{ pipe = \"{name}\" }}"),
                     _ => format!("write for example {part} = {example}"),
                 };
-                self.reader.report(Diagnostic::new(message, value.span.clone()).with_hint(hint));
+                self.reader.report(Diagnostic::new(message, value.span.range()).with_hint(hint));
             }
             for (key, _) in value.entries() {
                 if ["id", "kind", "from", "to"].contains(&key.name.as_str()) {
                     let message = format!("{what}, {part}: unknown field `{}`", key.name);
                     let hint = "the station says what its parts are and what they join";
-                    let problem = Diagnostic::new(message, key.span.clone());
+                    let problem = Diagnostic::new(message, key.span.range());
                     self.reader.report(problem.with_hint(hint));
                 }
             }

@@ -21,7 +21,7 @@ impl ModelReader<'_> {
         for field in PROVENANCE {
             words.asked.push(field);
             if let Some((key, value)) = words.tree.take(field) {
-                provenance.insert(key.name, value.to_json());
+                provenance.insert(key.name.into(), value.to_json());
             }
         }
         let (params, place) = self.parameters(words, &kind)?;

@@ -64,8 +64,8 @@ impl ModelReader<'_> {
     /// Fields that belong to another kind.
     fn foreign(&mut self, place: &Place, kind: &str, fields: &[&[&str]]) {
         for field in fields.iter().flat_map(|fields| fields.iter()) {
-            if let Some(written) = place.fields.iter().find(|written| written.si == *field) {
-                let message = format!("[fluid]: kind = \"{kind}\" takes no {}", written.name);
+            if let Some(written) = place.fields.iter().find(|written| written.si() == *field) {
+                let message = format!("[fluid]: kind = \"{kind}\" takes no {}", written.name());
                 let hint = match *field {
                     "share" => {
                         "an antifreeze is kind = \"ethylene_glycol\" or \"propylene_glycol\""
@@ -81,7 +81,7 @@ impl ModelReader<'_> {
                           \"constant_water\" and \"brine\""
                     }
                 };
-                let problem = Diagnostic::new(message, written.span.clone());
+                let problem = Diagnostic::new(message, written.span.range());
                 self.reader.report(problem.with_hint(hint));
             }
         }
@@ -107,7 +107,7 @@ impl ModelReader<'_> {
             CONSTANTS.into_iter().chain(LIMITS).filter(|field| !place.has(field)).collect();
         if !missing.is_empty() {
             let message = format!("[fluid]: a brine needs {}", missing.join(", "));
-            let problem = Diagnostic::new(message, place.span.clone());
+            let problem = Diagnostic::new(message, place.span.range());
             let hint = "take them from the data sheet at the usual temperature; limits: min_temperature_degc, \
                         max_temperature_degc";
             self.reader.report(problem.with_hint(hint));
@@ -131,7 +131,7 @@ impl ModelReader<'_> {
         let Some(share) = fluid.share else {
             let message = format!("[fluid]: kind = \"{kind}\" needs its share");
             let hint = "share of the mass, for example share = 0.3 (freezes near -14 degC)";
-            self.reader.report(Diagnostic::new(message, place.span.clone()).with_hint(hint));
+            self.reader.report(Diagnostic::new(message, place.span.range()).with_hint(hint));
             return None;
         };
         if !(share > 0.0 && share <= LARGEST_SHARE) {

@@ -2,9 +2,10 @@
 
 use super::{ModelReader, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::{Tree, TreeKind};
+use crate::document::{Scalar, Tree, TreeKind};
 use crate::grammar::Grammar;
 use crate::model::Place;
+use crate::span::Span;
 use crate::wording::refused;
 use anergy_core::medium::Medium;
 use anergy_core::units::split_suffix;
@@ -14,13 +15,12 @@ use anergy_network::pipe_catalogue;
 use anergy_network::two_port::{ElementError, positive};
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::ops::Range;
 
 /// The pipe types by name; `None` for those that are reported as wrong already.
 pub(super) type PipeTypes = HashMap<String, Option<Tree>>;
 
 /// A pipe of the catalogue as the fields of a type, all at the place of its name.
-pub(super) fn bought(name: &str, span: Option<&Range<usize>>) -> Option<Tree> {
+pub(super) fn bought(name: &str, span: Span) -> Option<Tree> {
     let pipe = pipe_catalogue::find(name)?;
     let mut fields = json!({
         "inner_diameter_m": pipe.inner_diameter_m,
@@ -106,13 +106,13 @@ impl ModelReader<'_> {
         let mut fields = fields.clone();
         let Some((_, name)) = fields.take("pipe") else { return Some(fields) };
         let word = match &name.kind {
-            TreeKind::Scalar(Value::String(word)) => word.clone(),
+            TreeKind::Scalar(Scalar::Text(word)) => word.to_string(),
             _ => name.to_json().to_string(),
         };
-        let Some(base) = bought(&word, name.span.as_ref()) else {
+        let Some(base) = bought(&word, name.span) else {
             let message = format!("{what}: there is no pipe \"{word}\" in the catalogue");
             let hint = hint(&word, &PipeTypes::new());
-            self.reader.report(Diagnostic::new(message, name.span).with_hint(hint));
+            self.reader.report(Diagnostic::new(message, name.span.range()).with_hint(hint));
             return None;
         };
         fill(&mut fields, &base);
@@ -125,7 +125,7 @@ impl ModelReader<'_> {
         if !matches!(tree.kind, TreeKind::Table(_)) {
             let message =
                 format!("pipe_type must be a table of named types, not {}", tree.type_name());
-            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(
+            self.reader.report(Diagnostic::new(message, tree.span.range()).with_hint(
                 "write [pipe_type.dn20] with its fields, and pipe = \"dn20\" to use it",
             ));
             // The types are there, only not by name.
@@ -138,7 +138,7 @@ impl ModelReader<'_> {
             let what = format!("pipe_type \"{}\"", key.name);
             let before = self.reader.problems.len();
             let Some(fields) = self.built_on(&what, fields) else {
-                types.insert(key.name.clone(), None);
+                types.insert(key.name.to_string(), None);
                 continue;
             };
             let fields = &fields;
@@ -165,7 +165,7 @@ impl ModelReader<'_> {
                 ));
             }
             let sound = self.reader.problems.len() == before;
-            types.insert(key.name.clone(), sound.then(|| fields.clone()));
+            types.insert(key.name.to_string(), sound.then(|| fields.clone()));
         }
         types
     }

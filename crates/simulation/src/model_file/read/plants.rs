@@ -67,7 +67,7 @@ impl ModelReader<'_> {
                         "{what}, circulation_pump: {} is given beside the plant's pressure difference",
                         key.name
                     );
-                    let problem = Diagnostic::new(message, key.span.clone());
+                    let problem = Diagnostic::new(message, key.span.range());
                     self.reader.report(
                         problem.with_hint("take it out: the pump holds what the plant needs"),
                     );

@@ -2,7 +2,7 @@
 
 use super::{ModelReader, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::{Key, Tree, TreeKind};
+use crate::document::{Key, Scalar, Tree, TreeKind};
 use crate::model_file::NetworkEntry;
 use crate::model_file::tables::{Content, TableReader, separator_byte};
 use crate::wording::refused;
@@ -46,7 +46,7 @@ impl ModelReader<'_> {
     pub(super) fn station_types(&mut self) {
         let Some(tree) = self.tree.get("station_type") else { return };
         let mut wrong = |message: String, tree: &Tree, hint: &str| {
-            self.reader.report(Diagnostic::new(message, tree.span.clone()).with_hint(hint));
+            self.reader.report(Diagnostic::new(message, tree.span.range()).with_hint(hint));
         };
         if !matches!(tree.kind, TreeKind::Table(_)) {
             let message =
@@ -73,14 +73,14 @@ impl ModelReader<'_> {
     pub(super) fn typed_station(&mut self, mut tree: Tree) -> Option<Tree> {
         if let Some((_, name)) = tree.take("type") {
             let what = super::expand::station_in_words(&tree);
-            let TreeKind::Scalar(Value::String(word)) = &name.kind else {
+            let TreeKind::Scalar(Scalar::Text(word)) = &name.kind else {
                 let message = format!(
                     "{what}: type must be the name of a station_type, not {}",
                     name.type_name()
                 );
                 let hint =
                     "write for example type = \"house\", with a section [station_type.house]";
-                self.reader.report(Diagnostic::new(message, name.span).with_hint(hint));
+                self.reader.report(Diagnostic::new(message, name.span.range()).with_hint(hint));
                 return None;
             };
             let types = self.tree.get("station_type");
@@ -89,7 +89,7 @@ impl ModelReader<'_> {
                 let hint = did_you_mean(word, known.map(|(key, _)| key.name.as_str()))
                     .unwrap_or_else(|| format!("add a section [station_type.{word}]"));
                 let message = format!("{what}: there is no station_type \"{word}\"");
-                self.reader.report(Diagnostic::new(message, name.span).with_hint(hint));
+                self.reader.report(Diagnostic::new(message, name.span.range()).with_hint(hint));
                 return None;
             };
             fill(&mut tree, fields);
@@ -99,11 +99,11 @@ impl ModelReader<'_> {
             let what = super::expand::station_in_words(&tree);
             let message = format!("{what}: unit must be a table, not {}", unit.type_name());
             let hint = "write for example unit = { kind = \"heat_load\", load_kw = 8 }";
-            self.reader.report(Diagnostic::new(message, unit.span).with_hint(hint));
+            self.reader.report(Diagnostic::new(message, unit.span.range()).with_hint(hint));
             return Some(tree);
         }
         let mut add = |name: &str, value: Tree| {
-            let key = Key { name: name.to_owned(), span: value.span.clone() };
+            let key = Key { name: name.into(), span: value.span };
             if let TreeKind::Table(entries) = &mut unit.kind {
                 entries.retain(|(own, _)| own.name != name);
                 entries.push((key, value));
@@ -115,7 +115,7 @@ impl ModelReader<'_> {
         if let Some(name) = tree.get("name").filter(|_| tree.text("name") != Some("station")) {
             add("station", name.clone());
             let own = format!("{}.unit", tree.text("name").unwrap_or_default());
-            add("name", Tree::from_json(&Value::from(own), name.span.as_ref()));
+            add("name", Tree::from_json(&Value::from(own), name.span));
         }
         self.rows.entry("unit").or_default().push(unit);
         Some(tree)
@@ -141,7 +141,7 @@ fn fill(tree: &mut Tree, defaults: &Tree) {
 /// The places of all values of a type and of its parts.
 fn spans(tree: &Tree) -> Vec<std::ops::Range<usize>> {
     let own = tree.entries().iter().flat_map(|(key, value)| {
-        [key.span.clone(), value.span.clone()].into_iter().flatten().chain(spans(value))
+        [key.span.range(), value.span.range()].into_iter().flatten().chain(spans(value))
     });
-    tree.span.clone().into_iter().chain(own).collect()
+    tree.span.range().into_iter().chain(own).collect()
 }

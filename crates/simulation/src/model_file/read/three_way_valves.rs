@@ -40,7 +40,7 @@ impl ModelReader<'_> {
         for (key, _) in rest.entries() {
             if ["kind", "from", "to", "command_of", "inverse"].contains(&key.name.as_str()) {
                 let message = format!("{what}: unknown field `{}`", key.name);
-                let problem = crate::diagnostic::Diagnostic::new(message, key.span.clone());
+                let problem = crate::diagnostic::Diagnostic::new(message, key.span.range());
                 let hint = "a three-way valve joins a and b to ab, and its ways share one command";
                 self.reader.report(problem.with_hint(hint));
             }
