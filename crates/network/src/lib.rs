@@ -14,6 +14,7 @@ pub mod ground;
 pub mod holding;
 pub mod hydraulics;
 pub mod interface;
+mod memory;
 pub mod pipe_catalogue;
 pub mod soil;
 pub mod state;

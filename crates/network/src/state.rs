@@ -1,7 +1,5 @@
 //! Everything of a network that changes during a run: plain data, cloned by a snapshot.
 
-mod bytes;
-
 use crate::graph::{Network, NodeKind, Regulator};
 use crate::soil::SoilRings;
 use crate::transport::cells::Cells;

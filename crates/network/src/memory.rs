@@ -1,6 +1,6 @@
 //! How much memory a state takes.
 
-use super::{LawWater, NetworkState, Prescribed, Regulated};
+use crate::state::{LawWater, NetworkState, Prescribed, Regulated};
 use anergy_core::port::{PortFlow, PortRequest};
 
 impl NetworkState {
@@ -9,8 +9,9 @@ impl NetworkState {
         let floats = [
             &self.m_flow_kg_s,
             &self.p_pa,
+            // Twice: an actuator has two lags.
             &self.position,
-            &self.actuator_lag,
+            &self.position,
             &self.given_p_pa,
             &self.given_m_flow_kg_s,
             &self.given_t_k,
