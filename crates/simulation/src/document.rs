@@ -1,7 +1,10 @@
 //! A model text as a tree of values that remember their place; TOML or JSON.
 
+mod span;
+
+pub use span::Span;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::span::Span;
 use serde_json::{Map, Number, Value};
 use smol_str::SmolStr;
 use std::ops::Range;

@@ -3,13 +3,16 @@
 //! This is what a model file becomes after composites are expanded, what overlays change and
 //! `isolate` cuts, and what `build` turns into a simulation.
 
+mod place;
+
+pub use place::{Place, WrittenField};
+
 use crate::diagnostic::Diagnostics;
 use crate::effect::EffectSpec;
 use crate::model_file::{
     GroundEntry, InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry,
     RunEntry, WorstPointEntry,
 };
-pub use crate::place::{Place, WrittenField};
 use crate::table::Tables;
 use anergy_control::controllers::{ControllerParams, ports};
 use anergy_control::sensor::SensorEntry;

@@ -2,10 +2,10 @@
 //! (`anergy check --explain-defaults`).
 
 use crate::diagnostic::Diagnostics;
+use crate::document::Span;
 use crate::document::to_toml;
 use crate::model::{Model, Place};
 use crate::model_file::{FluidEntry, GroundEntry};
-use crate::span::Span;
 use anergy_network::elements::ElementParams;
 use serde_json::{Map, Value, json};
 

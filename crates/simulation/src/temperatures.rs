@@ -78,9 +78,9 @@ impl Temperatures {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::Span;
     use crate::grammar::Grammar;
     use crate::model::WrittenField;
-    use crate::span::Span;
     use anergy_network::elements::ElementParams;
     use serde_json::json;
 

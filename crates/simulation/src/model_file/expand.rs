@@ -14,8 +14,8 @@
 //! side (positive flow is feed-in), `extraction_valve` and `stub_cold` towards the hot side.
 
 use super::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
+use crate::document::Span;
 use crate::document::{Key, Tree, TreeKind};
-use crate::span::Span;
 use serde_json::{Value, json};
 use smol_str::{SmolStr, format_smolstr};
 

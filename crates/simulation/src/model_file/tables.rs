@@ -8,8 +8,8 @@ mod columns;
 
 use super::{comma, two_lines};
 use crate::diagnostic::Diagnostic;
+use crate::document::Span;
 use crate::document::{Key, Tree, TreeKind};
-use crate::span::Span;
 use crate::table::{Table, Tables};
 use anergy_core::units::split_suffix;
 use columns::{guess, is_site_field, known};

@@ -7,8 +7,8 @@
 //! diverting, port a. The direction of the water is a result either way.
 
 use super::expand::Plain;
+use crate::document::Span;
 use crate::document::{Key, Scalar, Tree, TreeKind};
-use crate::span::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};

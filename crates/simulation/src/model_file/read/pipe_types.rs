@@ -2,10 +2,10 @@
 
 use super::{ModelReader, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::document::Span;
 use crate::document::{Scalar, Tree, TreeKind};
 use crate::grammar::Grammar;
 use crate::model::Place;
-use crate::span::Span;
 use crate::wording::refused;
 use anergy_core::medium::Medium;
 use anergy_core::units::split_suffix;

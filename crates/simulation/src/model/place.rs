@@ -1,8 +1,8 @@
 //! Where entries and their fields stand in the model text, and how they are written there: kept small,
 //! because a large network has a million of them.
 
+use crate::document::Span;
 use crate::grammar::Spelling;
-use crate::span::Span;
 use serde_json::{Number, Value};
 use smol_str::SmolStr;
 use std::ops::Range;
