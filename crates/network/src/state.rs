@@ -343,7 +343,7 @@ impl NetworkState {
 }
 
 /// Lag of each of the two actuator filters over the rise time: `sqrt(sqrt 2 - 1)/5`.
-const RISE_TO_LAG: f64 = 0.128_718_850_581_116_7;
+pub const RISE_TO_LAG: f64 = 0.128_718_850_581_116_7;
 /// An actuator that follows a flow stays while its target is nearer than this share of its range, so that
 /// the two do not chase each other over rounding errors.
 const FOLLOWED: f64 = 1e-7;

@@ -31,7 +31,8 @@ pub(crate) use pressure::crossings;
 pub(crate) use saturation::{Missed, missed_now};
 use std::sync::Arc;
 pub use words::Unreached;
-use words::{blocked_event, named, prescribed_event};
+pub(crate) use words::named;
+use words::{blocked_event, prescribed_event};
 
 /// A simulation that can be stepped.
 pub struct Simulation {

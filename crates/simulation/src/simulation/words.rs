@@ -111,7 +111,7 @@ pub(super) fn blocked_event(
     }
 }
 
-pub(super) fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError {
+pub(crate) fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError {
     let time = time.to_string();
     let node_name = |id: anergy_core::ids::NodeId| plan.node_names[id.index()].clone();
     let edge_name = |id: anergy_core::ids::EdgeId| plan.edge_names[id.index()].clone();

@@ -1,0 +1,191 @@
+//! The closed loops of a group of controllers as one matrix of a complex frequency.
+//!
+//! **Equation** outputs `u = C(s) y`, readings `y = P(s) u`, `P_ij = S_i(s) G_ij A_j(s)` with the gains G of the
+//! network, the lags A of the actuators and the sensors S (`chain.rs`); the loops have a mode wherever
+//! `det(1 + k L(s)) = 0`, `L = -C P`, k = 1; with k all controllers of the group are scaled together. Sampled
+//! controllers of one interval h: the same in `z = exp(s h)`, exact at the samples. **Sources**
+//! `skogestad2005`.
+
+use super::chain::{Chain, SampledChain};
+use super::law::Law;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// The loops of a group.
+pub(super) struct Loops {
+    pub laws: Vec<Law>,
+    /// Gains of measured values (rows) over outputs, in the order of the controllers.
+    pub gains: DMatrix<f64>,
+    /// Chain of each measured value (rows) and output: index into `chains`.
+    chain_of: DMatrix<usize>,
+    chains: Vec<Chain>,
+    sampled: Vec<SampledChain>,
+    /// Interval of all controllers, s; 0 where they are continuous.
+    pub interval_s: f64,
+    /// Controller of each output.
+    pub owner: Vec<usize>,
+    /// All loops have the same law, chain and timing but for their gains: these.
+    pub uniform: Option<Vec<f64>>,
+}
+
+/// A sensor of a measured value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    pub lag_s: f64,
+    pub dead_s: f64,
+}
+
+impl Loops {
+    /// Loops of `laws` with one sensor for each measured value and one actuator lag for each output.
+    pub fn new(
+        laws: Vec<Law>,
+        gains: DMatrix<f64>,
+        seen: &[Seen],
+        actuator_lags_s: &[f64],
+        interval_s: f64,
+    ) -> Self {
+        let mut chains: Vec<Chain> = Vec::new();
+        let chain_of = DMatrix::from_fn(seen.len(), actuator_lags_s.len(), |i, j| {
+            let chain = Chain::new(actuator_lags_s[j], seen[i].lag_s, seen[i].dead_s);
+            chains.iter().position(|known| *known == chain).unwrap_or_else(|| {
+                chains.push(chain);
+                chains.len() - 1
+            })
+        });
+        let sampled = if interval_s > 0.0 {
+            chains.iter().map(|chain| chain.sampled(interval_s)).collect()
+        } else {
+            Vec::new()
+        };
+        let owner = laws.iter().enumerate().flat_map(|(i, law)| vec![i; law.c.nrows()]).collect();
+        let mut loops =
+            Self { laws, gains, chain_of, chains, sampled, interval_s, owner, uniform: None };
+        loops.uniform = loops.uniform_gains();
+        loops
+    }
+
+    /// Number of outputs.
+    pub fn len(&self) -> usize {
+        self.owner.len()
+    }
+
+    /// The gain of each controller where they differ in nothing else.
+    fn uniform_gains(&self) -> Option<Vec<f64>> {
+        let single = |law: &Law| law.a.nrows() == 1 && law.c.nrows() == 1 && law.b.ncols() == 1;
+        if self.chains.len() != 1 || !self.laws.iter().all(single) {
+            return None;
+        }
+        let parts = |law: &Law| (law.a[(0, 0)], law.c[(0, 0)] * law.b[(0, 0)], law.d[(0, 0)]);
+        let (a, cb, d) = parts(&self.laws[0]);
+        let gain = |(own_cb, own_d): (f64, f64)| {
+            if d.abs() > 0.0 { own_d / d } else { own_cb / cb }
+        };
+        let near = |x: f64, y: f64| (x - y).abs() <= 1e-6 * x.abs().max(y.abs());
+        let same = self.laws.iter().all(|law| {
+            let (own_a, own_cb, own_d) = parts(law);
+            let k = gain((own_cb, own_d));
+            (own_a - a).abs() < 1e-9 && near(own_cb, k * cb) && near(own_d, k * d) && k.is_finite()
+        });
+        same.then(|| self.laws.iter().map(parts).map(|(_, cb, d)| gain((cb, d))).collect())
+    }
+
+    /// The law and chain that all loops have where they are uniform, without gains.
+    pub fn common(&self, s: Complex<f64>) -> Complex<f64> {
+        -self.laws[0].transfer(self.variable(s))[(0, 0)] * self.chain(0, s)
+    }
+
+    /// z where the controllers are sampled, otherwise s itself.
+    fn variable(&self, s: Complex<f64>) -> Complex<f64> {
+        if self.interval_s > 0.0 { (s * self.interval_s).exp() } else { s }
+    }
+
+    fn chain(&self, i: usize, s: Complex<f64>) -> Complex<f64> {
+        match self.sampled.get(i) {
+            Some(sampled) => sampled.at((s * self.interval_s).exp()),
+            None => self.chains[i].at(s),
+        }
+    }
+
+    /// `L(s)`.
+    pub fn matrix(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
+        let chains: Vec<Complex<f64>> = (0..self.chains.len()).map(|i| self.chain(i, s)).collect();
+        let n = self.len();
+        let mut matrix = DMatrix::zeros(n, n);
+        let variable = self.variable(s);
+        let (mut row, mut seen) = (0, 0);
+        for law in &self.laws {
+            let transfer = law.transfer(variable);
+            for i in 0..transfer.nrows() {
+                for k in 0..transfer.ncols() {
+                    let entry = -transfer[(i, k)];
+                    if entry == Complex::new(0.0, 0.0) {
+                        continue;
+                    }
+                    for j in 0..n {
+                        let chain = chains[self.chain_of[(seen + k, j)]];
+                        matrix[(row + i, j)] += entry * self.gains[(seen + k, j)] * chain;
+                    }
+                }
+            }
+            row += transfer.nrows();
+            seen += transfer.ncols();
+        }
+        matrix
+    }
+
+    /// `1 + k L(s)`.
+    pub fn closed(&self, s: Complex<f64>, factor: f64) -> DMatrix<Complex<f64>> {
+        let mut closed = self.matrix(s) * Complex::new(factor, 0.0);
+        for i in 0..closed.nrows() {
+            closed[(i, i)] += 1.0;
+        }
+        closed
+    }
+
+    /// Times between which its frequencies lie, s: the sum of all lags of the slowest chain, the fastest.
+    pub fn times_s(&self) -> (f64, f64) {
+        let all = self.chains.iter().map(|chain| chain.total_s().max(self.interval_s));
+        let (min, max) =
+            all.fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t), max.max(t)));
+        if max > 0.0 { (min.max(1e-3 * max), max) } else { (1.0, 1.0) }
+    }
+
+    /// Largest frequency that means something, rad/s.
+    pub fn highest_rad_s(&self) -> f64 {
+        let (shortest, _) = self.times_s();
+        if self.interval_s > 0.0 {
+            std::f64::consts::PI / self.interval_s
+        } else {
+            300.0 / shortest
+        }
+    }
+
+    /// How much of a mode is in each controller, and the phase of each output, radians, at a root `s`.
+    pub fn shape(&self, s: Complex<f64>) -> (Vec<f64>, Vec<f64>) {
+        // Near a root the inverse is the residue over the distance: right times left vector.
+        let beside = s + Complex::new(1e-7 * s.norm(), 0.0);
+        let n = self.len();
+        let Some(inverse) = self.closed(beside, 1.0).try_inverse() else {
+            return (vec![0.0; self.laws.len()], vec![0.0; n]);
+        };
+        let mut shares = vec![0.0; self.laws.len()];
+        let total: f64 = (0..n).map(|i| inverse[(i, i)].norm()).sum();
+        for i in 0..n {
+            shares[self.owner[i]] += inverse[(i, i)].norm() / total;
+        }
+        let column =
+            (0..n).max_by(|i, k| inverse[(*i, *i)].norm().total_cmp(&inverse[(*k, *k)].norm()));
+        let column = column.unwrap_or(0);
+        let reference = inverse[(column, column)];
+        let phases = (0..n).map(|i| (inverse[(i, column)] / reference).arg()).collect();
+        (shares, phases)
+    }
+
+    /// Relative gain of each loop with itself at rest, where there are as many values as outputs.
+    pub fn relative_gains(&self) -> Option<DVector<f64>> {
+        if self.gains.nrows() != self.gains.ncols() {
+            return None;
+        }
+        let inverse = self.gains.clone().try_inverse()?;
+        Some(self.gains.component_mul(&inverse.transpose()).diagonal())
+    }
+}

@@ -1,0 +1,412 @@
+//! Modes of closed loops and the scale of all gains at which the first of them stops decaying.
+//!
+//! **Method** where all loops are alike but for their gains, `L = K G l(s)`, each eigenvalue of `K G` gives a
+//! scalar equation `1 + k lambda l(s) = 0`, exactly. Otherwise these equations, with l weighted by the
+//! participation of the loops in the eigenvector, give the start for secant steps on
+//! `1/(c^H (1 + k L)^-1 b)`, which vanishes at the modes only. The number of growing modes is counted with the
+//! argument principle, so that none is missed; where the count differs, modes are looked for from many
+//! starts. **Validity** poles of the controllers at zero (integrators) or in the left half plane. **Sources**
+//! `skogestad2005` (generalised Nyquist criterion).
+
+use super::loops::Loops;
+use nalgebra::{Complex, DMatrix, DVector};
+use std::f64::consts::PI;
+
+type C64 = Complex<f64>;
+
+/// Frequencies that are looked at for crossings, per factor of ten.
+const PER_DECADE: usize = 40;
+/// Modes that are refined where loops differ.
+const REFINED: usize = 8;
+const MAX_SECANT: usize = 40;
+const CLOSE: f64 = 1e-10;
+/// Modes closer than this, relative, are one.
+const SAME: f64 = 1e-6;
+/// A mode that moves less than this between growing and decaying has no period.
+const NO_PERIOD: f64 = 1e-3;
+/// Steps of the scale from the limit to the present gains, each by this factor at most.
+const SCALE_STEP: f64 = 1.15;
+
+/// A mode of the loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Root {
+    /// Growth and frequency, 1/s.
+    pub s: C64,
+    /// How many modes are this one.
+    pub times: usize,
+}
+
+/// Where the first mode stops decaying.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Limit {
+    /// Scale of all gains; above it there is a mode that grows.
+    pub factor: f64,
+    /// Frequency of that mode, rad/s.
+    pub omega_rad_s: f64,
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Found {
+    /// Oscillating modes, the fastest growing first.
+    pub roots: Vec<Root>,
+    pub limit: Option<Limit>,
+    /// Growing modes by the argument principle (a pair counts twice).
+    pub growing: i64,
+}
+
+/// The loops with the eigenvalues of their gains, where they are uniform.
+struct Case<'a> {
+    loops: &'a Loops,
+    lambdas: Option<Vec<C64>>,
+}
+
+/// A scalar equation `1 + k f(s) = 0`.
+struct Scalar<'a> {
+    f: Box<dyn Fn(C64) -> C64 + 'a>,
+    times: usize,
+}
+
+/// Analyses a group of loops.
+pub(super) fn analyse(loops: &Loops) -> Found {
+    let n = loops.len();
+    let lambdas = loops.uniform.as_ref().map(|k| {
+        let scaled = DMatrix::from_fn(n, n, |i, j| k[i] * loops.gains[(i, j)]);
+        scaled.complex_eigenvalues().iter().copied().collect()
+    });
+    let case = Case { loops, lambdas };
+    let scalars = scalars(&case);
+    let exact = case.lambdas.is_some();
+    let omegas = frequencies(loops);
+    let mut starts: Vec<(Limit, &Scalar)> = Vec::new();
+    for scalar in &scalars {
+        starts.extend(crossing(scalar, &omegas).map(|limit| (limit, scalar)));
+    }
+    starts.sort_by(|a, b| a.0.factor.total_cmp(&b.0.factor));
+    if !exact {
+        starts.truncate(REFINED);
+    }
+    let mut limits = Vec::new();
+    let mut roots: Vec<Root> = Vec::new();
+    for (limit, scalar) in starts {
+        let start = follow(scalar, limit);
+        if exact {
+            limits.push(limit);
+            start.into_iter().for_each(|s| keep(&mut roots, s, scalar.times));
+        } else {
+            limits.extend(refine_limit(loops, limit));
+            let refined = start.and_then(|start| {
+                let probe = probe(loops.len(), 0);
+                secant(|s| resolvent(loops, s, 1.0, &probe), start)
+            });
+            refined.into_iter().for_each(|s| keep(&mut roots, s, 1));
+        }
+    }
+    let growing = count_growing(&case, 1.0);
+    if counted(&roots) < growing {
+        for s in search(loops, &omegas) {
+            keep(&mut roots, s, 1);
+        }
+    }
+    roots.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
+    let limit = limits.into_iter().min_by(|a, b| a.factor.total_cmp(&b.factor));
+    let limit = if exact { limit } else { checked(&case, limit, &omegas) };
+    Found { roots, limit, growing }
+}
+
+/// Growing modes among the roots.
+fn counted(roots: &[Root]) -> i64 {
+    let pairs = roots.iter().filter(|root| root.s.re > 0.0).map(|root| 2 * root.times);
+    i64::try_from(pairs.sum::<usize>()).unwrap_or(i64::MAX)
+}
+
+fn keep(roots: &mut Vec<Root>, s: C64, times: usize) {
+    let s = C64::new(s.re, s.im.abs());
+    if s.im < NO_PERIOD * s.re.abs() || !s.re.is_finite() {
+        return;
+    }
+    match roots.iter_mut().find(|known| (known.s - s).norm() < SAME * s.norm()) {
+        Some(known) => known.times = known.times.max(times),
+        None => roots.push(Root { s, times }),
+    }
+}
+
+/// The scalar equations: exact for uniform loops, otherwise starts.
+fn scalars<'a>(case: &'a Case) -> Vec<Scalar<'a>> {
+    let loops = case.loops;
+    let n = loops.len();
+    if let Some(lambdas) = &case.lambdas {
+        let mut all: Vec<(C64, usize)> = Vec::new();
+        for lambda in lambdas.iter().filter(|lambda| lambda.im >= 0.0 && lambda.norm() > 0.0) {
+            match all.iter_mut().find(|(known, _)| (known - lambda).norm() < SAME * lambda.norm()) {
+                Some((_, times)) => *times += 1,
+                None => all.push((*lambda, 1)),
+            }
+        }
+        let scalar = |(lambda, times): (C64, usize)| Scalar {
+            f: Box::new(move |s| lambda * loops.common(s)),
+            times,
+        };
+        return all.into_iter().map(scalar).collect();
+    }
+    // The eigenvectors at the frequency of the chains, each with the loops that take part.
+    let (_, slowest) = loops.times_s();
+    let at = C64::new(0.0, 2.0 / slowest);
+    let matrix = loops.matrix(at);
+    let eigenvalues = matrix.clone().eigenvalues().unwrap_or_else(|| DVector::zeros(0));
+    let mut scalars = Vec::new();
+    for lambda in eigenvalues.iter().filter(|lambda| lambda.norm() > 0.0) {
+        let shift = *lambda * C64::new(1.0 + 1e-7, 1e-7);
+        let moved = &matrix - DMatrix::from_diagonal_element(n, n, shift);
+        let right = inverse_iteration(&moved);
+        let left = inverse_iteration(&moved.adjoint());
+        let norm = left.dotc(&right);
+        if norm.norm() < 1e-12 {
+            continue;
+        }
+        let f = move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm;
+        scalars.push(Scalar { f: Box::new(f), times: 1 });
+    }
+    scalars
+}
+
+fn inverse_iteration(matrix: &DMatrix<C64>) -> DVector<C64> {
+    let n = matrix.nrows();
+    let lu = matrix.clone().lu();
+    let mut vector = probe(n, 1);
+    for _ in 0..3 {
+        if let Some(next) = lu.solve(&vector) {
+            let norm = next.norm();
+            if norm.is_finite() && norm > 0.0 {
+                vector = next.unscale(norm);
+            }
+        }
+    }
+    vector
+}
+
+/// A vector that is orthogonal to no mode but by bad luck.
+fn probe(n: usize, seed: u32) -> DVector<C64> {
+    let angle = |i: usize| (1.0 + f64::from(seed)) * 2.399_963 * (i as f64 + 0.5);
+    DVector::from_fn(n, |i, _| C64::from_polar(1.0 + 0.3 * (angle(i) * 1.7).sin(), angle(i)))
+}
+
+fn frequencies(loops: &Loops) -> Vec<f64> {
+    let (_, slowest) = loops.times_s();
+    let (low, high) = (1e-3 / slowest, loops.highest_rad_s());
+    let decades = (high / low).log10().max(1.0);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let n = (decades * PER_DECADE as f64).ceil() as usize;
+    (0..=n).map(|i| low * (high / low).powf(i as f64 / n as f64)).collect()
+}
+
+/// The smallest scale at which `1 + k f(i omega)` vanishes.
+fn crossing(scalar: &Scalar, omegas: &[f64]) -> Option<Limit> {
+    let f = |omega: f64| (scalar.f)(C64::new(0.0, omega));
+    let mut best: Option<Limit> = None;
+    let mut before = (omegas[0], f(omegas[0]));
+    let consider = |omega: f64, value: C64, best: &mut Option<Limit>| {
+        let factor = 1.0 / value.norm();
+        if value.re < 0.0 && best.is_none_or(|best| factor < best.factor) {
+            *best = Some(Limit { factor, omega_rad_s: omega });
+        }
+    };
+    for &omega in &omegas[1..] {
+        let now = (omega, f(omega));
+        if before.1.im * now.1.im <= 0.0 && (before.1.re < 0.0 || now.1.re < 0.0) {
+            let (mut low, mut high) = (before, now);
+            for _ in 0..60 {
+                let middle = 0.5 * (low.0 + high.0);
+                let value = f(middle);
+                if low.1.im * value.im <= 0.0 {
+                    high = (middle, value)
+                } else {
+                    low = (middle, value)
+                }
+            }
+            // Where the phase jumps, nothing crosses.
+            if high.1.im.abs() < 1e-6 * high.1.norm() {
+                consider(high.0, high.1, &mut best);
+            }
+        }
+        before = now;
+    }
+    // Sampled loops may swing from sample to sample.
+    let (omega, last) = before;
+    if last.im.abs() <= 1e-9 * last.norm() {
+        consider(omega, last, &mut best);
+    }
+    best
+}
+
+/// The root of a scalar equation at the present gains that crosses at its limit.
+fn follow(scalar: &Scalar, limit: Limit) -> Option<C64> {
+    let mut s = C64::new(0.0, limit.omega_rad_s);
+    let span = limit.factor.ln();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let steps = ((span.abs() / SCALE_STEP.ln()).ceil() as usize).clamp(1, 400);
+    for step in 1..=steps {
+        let factor = (span * (1.0 - step as f64 / steps as f64)).exp();
+        s = secant(|s| (scalar.f)(s) * factor + 1.0, s)?;
+        if s.im.abs() < NO_PERIOD * s.re.abs() {
+            return None;
+        }
+    }
+    Some(s)
+}
+
+/// A zero of a function, from a start.
+fn secant(f: impl Fn(C64) -> C64, start: C64) -> Option<C64> {
+    let mut a = start;
+    let mut b = start + C64::new(1e-4, 1e-4) * start.norm();
+    let (mut fa, mut fb) = (f(a), f(b));
+    for _ in 0..MAX_SECANT {
+        let slope = (fb - fa) / (b - a);
+        let step = fb / slope;
+        if !step.re.is_finite() || !step.im.is_finite() {
+            return (fb.norm() == 0.0).then_some(b);
+        }
+        // No further than half the way to the origin: modes lie around the start.
+        let step = step * (0.5 * b.norm() / step.norm()).min(1.0);
+        (a, fa) = (b, fb);
+        b -= step;
+        fb = f(b);
+        if step.norm() <= CLOSE * b.norm() {
+            return Some(b);
+        }
+    }
+    None
+}
+
+/// `1/(b^H (1 + k L)^-1 b)`.
+fn resolvent(loops: &Loops, s: C64, factor: f64, probe: &DVector<C64>) -> C64 {
+    match loops.closed(s, factor).lu().solve(probe) {
+        Some(answer) => probe.dotc(&answer).inv(),
+        None => C64::new(0.0, 0.0),
+    }
+}
+
+/// Newton on scale and frequency from those of a scalar equation.
+fn refine_limit(loops: &Loops, start: Limit) -> Option<Limit> {
+    let probe = probe(loops.len(), 0);
+    let f = |factor: f64, omega: f64| resolvent(loops, C64::new(0.0, omega), factor, &probe);
+    let (mut factor, mut omega) = (start.factor, start.omega_rad_s);
+    for _ in 0..30 {
+        let value = f(factor, omega);
+        let by_factor = (f(factor * (1.0 + 1e-6), omega) - value) / (1e-6 * factor);
+        let by_omega = (f(factor, omega * (1.0 + 1e-6)) - value) / (1e-6 * omega);
+        let det = by_factor.re * by_omega.im - by_factor.im * by_omega.re;
+        let d_factor = -(value.re * by_omega.im - value.im * by_omega.re) / det;
+        let d_omega = -(by_factor.re * value.im - by_factor.im * value.re) / det;
+        if !(d_factor.is_finite() && d_omega.is_finite()) {
+            return None;
+        }
+        factor *= (d_factor / factor).clamp(-0.5, 1.0) + 1.0;
+        omega *= (d_omega / omega).clamp(-0.3, 0.3) + 1.0;
+        if omega > loops.highest_rad_s() {
+            return None;
+        }
+        if d_factor.abs() < 1e-9 * factor && d_omega.abs() < 1e-9 * omega {
+            return Some(Limit { factor, omega_rad_s: omega });
+        }
+    }
+    None
+}
+
+/// The limit, if nothing grows below it and something above; otherwise that found by counting.
+fn checked(case: &Case, limit: Option<Limit>, omegas: &[f64]) -> Option<Limit> {
+    const MARGIN: f64 = 1e-3;
+    let loops = case.loops;
+    if let Some(limit) = limit
+        && count_growing(case, limit.factor * (1.0 - MARGIN)) == 0
+        && count_growing(case, limit.factor * (1.0 + MARGIN)) > 0
+    {
+        return Some(limit);
+    }
+    let (mut low, mut high) = (1e-6, limit.map_or(1e6, |limit| limit.factor * 2.0).max(1e6));
+    if count_growing(case, high) == 0 {
+        return None;
+    }
+    while high / low > 1.0 + 1e-6 {
+        let middle = (low * high).sqrt();
+        if count_growing(case, middle) == 0 { low = middle } else { high = middle }
+    }
+    // The frequency is that at which the determinant comes closest to zero.
+    let size = |omega: &f64| loops.closed(C64::new(0.0, *omega), high).determinant().norm();
+    let omega = omegas.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
+    Some(
+        refine_limit(loops, Limit { factor: high, omega_rad_s: omega })
+            .filter(|refined| (refined.factor / high - 1.0).abs() < 1e-2)
+            .unwrap_or(Limit { factor: high, omega_rad_s: omega }),
+    )
+}
+
+/// Roots from many starts.
+fn search(loops: &Loops, omegas: &[f64]) -> Vec<C64> {
+    let mut found = Vec::new();
+    for (i, &omega) in omegas.iter().enumerate().step_by(4) {
+        let probe = probe(loops.len(), u32::try_from(i).unwrap_or(0));
+        for growth in [0.3, 0.0] {
+            let start = C64::new(growth * omega, omega);
+            found.extend(secant(|s| resolvent(loops, s, 1.0, &probe), start));
+        }
+    }
+    // Zeros of the probe's answer only are not modes of the loops.
+    let mode = |s: &C64| {
+        let probe = probe(loops.len(), 987);
+        s.re > -s.im.abs() && resolvent(loops, *s, 1.0, &probe).norm() < 1e-6
+    };
+    found.into_iter().filter(mode).collect()
+}
+
+/// Number of growing modes: turns of the determinant along the imaginary axis.
+///
+/// With p poles at zero (integrators) it is `p/2 - change of phase/pi`.
+fn count_growing(case: &Case, factor: f64) -> i64 {
+    let loops = case.loops;
+    let det = |omega: f64| {
+        let s = C64::new(0.0, omega);
+        match &case.lambdas {
+            Some(lambdas) => {
+                let common = loops.common(s) * factor;
+                lambdas.iter().map(|lambda| lambda * common + 1.0).product()
+            }
+            None => loops.closed(s, factor).determinant(),
+        }
+    };
+    let (_, slowest) = loops.times_s();
+    // Below all frequencies of the loops, which a small scale moves down.
+    let mut low = 1e-4 / slowest;
+    let order = |omega: f64| {
+        let value = (det(0.1 * omega).norm() / det(omega).norm()).log10();
+        (value, value.round())
+    };
+    let mut poles = order(low);
+    for _ in 0..12 {
+        if (poles.0 - poles.1).abs() < 0.02 {
+            break;
+        }
+        low *= 0.1;
+        poles = order(low);
+    }
+    let high = loops.highest_rad_s();
+    let mut phase = 0.0;
+    let mut at = (low, det(low));
+    let mut step = 1.3;
+    while at.0 < high {
+        let next = (at.0 * step).min(high);
+        let value = det(next);
+        let turn = (value / at.1).arg();
+        if turn.abs() > 0.7 && step > 1.0005 {
+            step = 1.0 + 0.5 * (step - 1.0);
+            continue;
+        }
+        phase += turn;
+        at = (next, value);
+        step = if turn.abs() < 0.3 { (1.0 + 1.5 * (step - 1.0)).min(1.5) } else { step };
+    }
+    let count = 0.5 * poles.1 - phase / PI;
+    #[allow(clippy::cast_possible_truncation)]
+    let count = count.round() as i64;
+    count
+}
