@@ -54,6 +54,14 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Who blocks whom, which controllers will hunt, and how far it is to the limit, without simulating
+    Stability {
+        /// Model file
+        model: PathBuf,
+        /// Also write the analysis as JSON ("-" for standard output)
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
     /// Find everything that is wrong with a model
     Check {
         /// Model file
@@ -122,6 +130,9 @@ fn main() -> ExitCode {
             commands::run::run(&model, [until, step, record], out.as_deref())
         }
         Command::Solve { model, json } => commands::solve::solve(&model, json.as_deref()),
+        Command::Stability { model, json } => {
+            commands::stability::stability(&model, json.as_deref())
+        }
         Command::Check { model, expand, explain_defaults, signals } => {
             commands::check::check(&model, expand, explain_defaults, signals)
         }

@@ -3,3 +3,4 @@
 pub mod controller;
 pub mod controllers;
 pub mod sensor;
+pub mod swing;

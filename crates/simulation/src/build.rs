@@ -18,6 +18,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
 use crate::model_file::InitialState;
 use crate::plan::{EdgeOnMap, NodeOnMap, Plan, PlannedUnit};
+use crate::simulation::{SwingState, watches};
 use crate::state::{Reading, State};
 use crate::wording::refused;
 use anergy_core::clock::Time;
@@ -193,6 +194,7 @@ impl Builder<'_> {
             units,
             sensors: Vec::new(),
             controllers: Vec::new(),
+            swing_watches: Vec::new(),
             worst_points,
             prescriptions,
             regulators,
@@ -241,6 +243,9 @@ impl Builder<'_> {
         self.controllers(&mut plan, &set_points, &mut writers);
         (plan.channels, plan.sources) = (Vec::new(), Vec::new());
         self.targets(&mut plan);
+        plan.swing_watches = watches(&plan);
+        channels::add_swings(&mut plan);
+        plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
         Some(plan)
     }
 
@@ -311,6 +316,7 @@ impl Builder<'_> {
             crossed: Vec::new(),
             missed: Vec::new(),
             sensors: Vec::new(),
+            swings: Vec::new(),
             controller_states: Vec::new(),
             next_tick: Vec::new(),
             last_tick: Vec::new(),

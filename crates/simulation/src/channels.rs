@@ -1,7 +1,7 @@
 //! What can be recorded and measured: every quantity of every component by name.
 
 use crate::plan::Plan;
-use crate::simulation::stored_j;
+use crate::simulation::{Said, stored_j};
 use crate::state::State;
 use anergy_core::ids::SignalId;
 use anergy_core::port::Port;
@@ -66,6 +66,8 @@ pub enum Source {
     WorstPoint(usize),
     /// An output of a unit.
     UnitOutput(usize),
+    /// Whether a watched pump swings: 1 alone, 2 against another.
+    PumpSwing(usize),
     /// Reading of a sensor.
     Sensor(usize),
     /// An input signal.
@@ -188,6 +190,17 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
 
 /// Unit of a difference of temperatures, which counts from nothing.
 pub(crate) const DIFFERENCE_K: &str = "delta K";
+
+/// Adds whether the watched pumps swing.
+pub(crate) fn add_swings(plan: &mut Plan) {
+    let channels = std::mem::take(&mut plan.channels);
+    let mut list = List { channels, sources: std::mem::take(&mut plan.sources) };
+    for (i, watch) in plan.swing_watches.iter().enumerate() {
+        let name = &plan.edge_names[watch.edge];
+        list.add(ChannelGroup::Control, name, "swings", "1", Source::PumpSwing(i));
+    }
+    (plan.channels, plan.sources) = (list.channels, list.sources);
+}
 
 /// Adds the readings of the sensors.
 pub(crate) fn add_sensors(plan: &mut Plan) {
@@ -323,6 +336,11 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
             pairs.map(|&(a, b)| network.p_pa[a] - network.p_pa[b]).fold(f64::INFINITY, f64::min)
         }
         Source::UnitOutput(i) => state.unit_outputs[i],
+        Source::PumpSwing(i) => match state.swings[i].said {
+            Said::Quiet => 0.0,
+            Said::Oscillating => 1.0,
+            Said::Hunting => 2.0,
+        },
         Source::Sensor(i) => state.sensors[i].value(),
         Source::Signal(id) => state.signals[id.index()],
         Source::TotalElectric => plan.total_electric_w(network),

@@ -52,6 +52,17 @@ pub(crate) struct PlannedController {
     pub state: Range<usize>,
 }
 
+/// A pump that a controller drives.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SwingWatch {
+    pub controller: usize,
+    pub edge: usize,
+    /// Whether the first set point is its flow.
+    pub holds_flow: bool,
+    /// Whether temperatures are in the loop.
+    pub slow: bool,
+}
+
 /// A sensor and what it measures.
 #[derive(Debug, Clone)]
 pub(crate) struct PlannedSensor {
@@ -169,6 +180,7 @@ pub struct Plan {
     pub(crate) units: Vec<PlannedUnit>,
     pub(crate) sensors: Vec<PlannedSensor>,
     pub(crate) controllers: Vec<PlannedController>,
+    pub(crate) swing_watches: Vec<SwingWatch>,
     pub(crate) worst_points: Vec<WorstPoint>,
     pub(crate) prescriptions: Vec<PlannedPrescription>,
     /// Set value of each self-acting valve of the network.

@@ -3,6 +3,7 @@
 mod access;
 mod actuators;
 mod control;
+mod hunting;
 mod meters;
 mod pipes;
 mod pressure;
@@ -25,6 +26,7 @@ use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::Hold;
 use anergy_network::transport::Transport;
 use control::Desk;
+pub(crate) use hunting::{Said, SwingState, watches};
 pub(crate) use pipes::stored_j;
 pub use pressure::Crossing;
 pub(crate) use pressure::crossings;
@@ -128,6 +130,7 @@ impl Simulation {
         self.advance_units(dt_s);
         self.watch_stations(end, dt_s);
         self.watch_targets(end, dt_s);
+        self.watch_swings(end, dt_s);
         self.book(dt_s);
         self.book_pipes(dt_s);
         self.read_meters(dt_s);

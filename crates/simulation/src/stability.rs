@@ -7,12 +7,15 @@ mod law;
 mod loops;
 mod modes;
 
+use crate::build::build;
 use crate::channels::Source;
 use crate::error::RunError;
 use crate::gains::{Gains, measured, reach};
+use crate::model::Model;
 use crate::plan::{Plan, PlannedController};
 use crate::simulation::Simulation;
 use crate::state::State;
+use crate::steady::settle;
 use anergy_network::hydraulics::linearize::Valves;
 use law::Law;
 use loops::{Loops, Seen};
@@ -74,6 +77,26 @@ pub struct Hunting {
     pub modes: Vec<Mode>,
     /// The controllers, in the order of the model.
     pub controllers: Vec<LoopMargin>,
+}
+
+/// Who blocks whom and which loops will hunt.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct Stability {
+    /// Oscillating modes, the fastest growing first.
+    pub modes: Vec<Mode>,
+    /// The controllers, in the order of the model.
+    pub controllers: Vec<LoopMargin>,
+}
+
+/// Analyses a model at its steady state.
+///
+/// # Errors
+/// What is wrong with the model, or why it has no steady state.
+pub fn analyse(model: &Model) -> Result<Stability, RunError> {
+    let mut simulation = Simulation::new(build(model)?)?;
+    settle(&mut simulation)?;
+    let Hunting { modes, controllers } = hunting(&simulation)?;
+    Ok(Stability { modes, controllers })
 }
 
 /// A controller with its law, where its loop is closed.

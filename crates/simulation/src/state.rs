@@ -1,7 +1,7 @@
 //! The state of a simulation: plain data, so that a clone or its bytes are a snapshot.
 
 use crate::error::RunError;
-use crate::simulation::Missed;
+use crate::simulation::{Missed, SwingState};
 use anergy_control::sensor::SensorState;
 use anergy_core::clock::Time;
 use anergy_network::holding::VesselState;
@@ -52,6 +52,8 @@ pub struct State {
     /// What is remembered of each target.
     pub(crate) missed: Vec<Missed>,
     pub(crate) sensors: Vec<SensorState>,
+    /// What is known of each watched pump.
+    pub(crate) swings: Vec<SwingState>,
     pub(crate) controller_states: Vec<f64>,
     pub(crate) next_tick: Vec<Time>,
     pub(crate) last_tick: Vec<Time>,

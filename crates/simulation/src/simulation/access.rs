@@ -88,6 +88,7 @@ impl Simulation {
             && own.network.cells.fits(&other.network.cells)
             && own.unit_states.len() == other.unit_states.len()
             && own.controller_states.len() == other.controller_states.len()
+            && own.swings.len() == other.swings.len()
             && own.sensors.len() == other.sensors.len()
             && own.sensors.iter().zip(&other.sensors).all(|(own, other)| own.fits(other))
             && own.network.density_kg_m3.len() == other.network.density_kg_m3.len()

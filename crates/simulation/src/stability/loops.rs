@@ -162,7 +162,7 @@ impl Loops {
     /// How much of a mode is in each controller, and the phase of each output, radians, at a root `s`.
     pub fn shape(&self, s: Complex<f64>) -> (Vec<f64>, Vec<f64>) {
         // Near a root the inverse is the residue over the distance: right times left vector.
-        let beside = s + Complex::new(1e-7 * s.norm(), 0.0);
+        let beside = s + Complex::new(1e-5 * s.norm(), 0.0);
         let n = self.len();
         let Some(inverse) = self.closed(beside, 1.0).try_inverse() else {
             return (vec![0.0; self.laws.len()], vec![0.0; n]);

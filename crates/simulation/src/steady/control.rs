@@ -1,13 +1,18 @@
 //! Controllers in the steady state: "measured = set point, actuator free within its limits, else at the
 //! limit", or whatever else is the balance of a controller.
 //!
-//! **Numerics** Newton on the outputs of all controllers, its Jacobian by differences of settled states.
+//! **Numerics** Newton on the outputs of all controllers. The Jacobian follows from the gains of the network
+//! where only water is in the loops, otherwise from differences of settled states. An actuator behind a closed
+//! check valve has no gain, so that a start may fail where another one does not.
 
 use super::settle_temperatures;
+use crate::channels;
 use crate::error::RunError;
+use crate::gains::{Gains, measured, reach};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
-use anergy_control::controller::Balance;
+use anergy_control::controller::{Balance, Inputs};
+use anergy_network::hydraulics::linearize::Valves;
 use nalgebra::{DMatrix, DVector};
 
 const MAX_ROUNDS: u32 = 60;
@@ -15,6 +20,10 @@ const MAX_ROUNDS: u32 = 60;
 const DIFFERENCE: f64 = 1e-5;
 /// A balance is reached within this share of its scale.
 const REACHED: f64 = 1e-9;
+/// Outputs at the start, in shares of their ranges: one after the other is tried.
+const STARTS: [f64; 3] = [0.7, 1.0, 0.4];
+/// Change of a measured value for the difference quotient of a balance, in scales.
+const MEASURED_DIFFERENCE: f64 = 1e-6;
 
 /// An output with its limits.
 struct Output {
@@ -55,13 +64,99 @@ fn misses(simulation: &Simulation) -> Vec<Balance> {
     plan.controllers.iter().flat_map(|planned| planned.balance(plan, state)).collect()
 }
 
+/// Misses of the free outputs over each other, from settled states.
+fn by_differences(
+    simulation: &mut Simulation,
+    outputs: &[Output],
+    values: &DVector<f64>,
+    missed: &[Balance],
+    free: &[usize],
+) -> Result<DMatrix<f64>, RunError> {
+    let mut jacobian = DMatrix::zeros(free.len(), free.len());
+    for (column, &i) in free.iter().enumerate() {
+        let range = outputs[i].max - outputs[i].min;
+        let step = if range.is_finite() { DIFFERENCE * range } else { DIFFERENCE };
+        let step = if values[i] + step > outputs[i].max { -step } else { step };
+        let mut moved = values.clone();
+        moved[i] += step;
+        let answered = answer(simulation, outputs, &moved)?;
+        for (row, &j) in free.iter().enumerate() {
+            jacobian[(row, column)] = (answered[j].miss - missed[j].miss) / step;
+        }
+    }
+    Ok(jacobian)
+}
+
+/// The same from the gains of the network; `None` where more than water is in the loops.
+fn by_gains(simulation: &Simulation, outputs: &[Output], free: &[usize]) -> Option<DMatrix<f64>> {
+    let (plan, state) = (&**simulation.plan(), simulation.state());
+    let signal = |i: usize| {
+        let output = &outputs[i];
+        plan.controllers[output.controller].acts_on[output.output]
+    };
+    let reaches: Option<Vec<_>> = free.iter().map(|&i| reach(plan, state, signal(i))).collect();
+    let reaches = reaches?;
+    // What each free output misses over each value that its controller measures.
+    let mut sources = Vec::new();
+    let mut slopes = Vec::new();
+    for (row, &i) in free.iter().enumerate() {
+        let planned = &plan.controllers[outputs[i].controller];
+        let mut values: Vec<f64> =
+            planned.measures.iter().map(|of| channels::value(plan, state, *of)).collect();
+        let now: Vec<f64> = planned.acts_on.iter().map(|id| state.signals[id.index()]).collect();
+        let miss = |values: &[f64]| {
+            let inputs = Inputs {
+                measured: values,
+                set_points: &state.signals[planned.set_points.clone()],
+                limits: &planned.limits,
+            };
+            let mut balance = vec![Balance::default(); now.len()];
+            planned.controller.balance(&inputs, &now, &mut balance);
+            balance[outputs[i].output]
+        };
+        let scale = miss(&values).scale;
+        for k in 0..values.len() {
+            let (value, step) = (values[k], MEASURED_DIFFERENCE * scale);
+            values[k] = value + step;
+            let above = miss(&values).miss;
+            values[k] = value - step;
+            let slope = (above - miss(&values).miss) / (2.0 * step);
+            values[k] = value;
+            let (of, minus) = measured(plan, planned.measures[k]);
+            sources.extend([Some(of), minus].into_iter().flatten());
+            slopes.push((row, slope));
+            slopes.extend(minus.map(|_| (row, -slope)));
+        }
+    }
+    let mut gains = Gains::new(plan, state, Valves::Follow).ok()?;
+    let mut jacobian = DMatrix::zeros(free.len(), free.len());
+    for (column, reach) in reaches.iter().enumerate() {
+        let all = gains.column(plan, state, reach, &sources);
+        for ((row, slope), gain) in slopes.iter().zip(all) {
+            jacobian[(*row, column)] += slope * gain?;
+        }
+    }
+    Some(jacobian)
+}
+
 /// Newton on the outputs of all controllers, within their limits.
 pub(super) fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
+    let mut failure = None;
+    for share in STARTS {
+        match settle_from(simulation, share) {
+            Err(error @ RunError::NotSettled { .. }) => failure = failure.or(Some(error)),
+            done => return done,
+        }
+    }
+    failure.map_or(Ok(()), Err)
+}
+
+fn settle_from(simulation: &mut Simulation, share: f64) -> Result<(), RunError> {
     let plan = simulation.plan().clone();
     let outputs = outputs(&plan);
     let n = outputs.len();
     let start = |o: &Output| {
-        if o.min.is_finite() && o.max.is_finite() { o.min + 0.7 * (o.max - o.min) } else { 0.0 }
+        if o.min.is_finite() && o.max.is_finite() { o.min + share * (o.max - o.min) } else { 0.0 }
     };
     let mut values = DVector::from_iterator(n, outputs.iter().map(start));
     let name = |i: usize| &plan.controllers[outputs[i].controller].name;
@@ -83,18 +178,10 @@ pub(super) fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunE
         if free.iter().all(|&i| missed[i].miss.abs() <= REACHED * missed[i].scale) {
             return Ok(());
         }
-        let mut jacobian = DMatrix::zeros(free.len(), free.len());
-        for (column, &i) in free.iter().enumerate() {
-            let range = outputs[i].max - outputs[i].min;
-            let step = if range.is_finite() { DIFFERENCE * range } else { DIFFERENCE };
-            let step = if values[i] + step > outputs[i].max { -step } else { step };
-            let mut moved = values.clone();
-            moved[i] += step;
-            let answered = answer(simulation, &outputs, &moved)?;
-            for (row, &j) in free.iter().enumerate() {
-                jacobian[(row, column)] = (answered[j].miss - missed[j].miss) / step;
-            }
-        }
+        let jacobian = match by_gains(simulation, &outputs, &free) {
+            Some(jacobian) => jacobian,
+            None => by_differences(simulation, &outputs, &values, &missed, &free)?,
+        };
         // An actuator beyond what its element can do, like a head that the pump does not reach at this
         // flow, has no effect here, but may have one elsewhere.
         let idle = (0..free.len()).find(|&k| jacobian.column(k).iter().all(|slope| *slope == 0.0));
