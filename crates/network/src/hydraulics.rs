@@ -22,6 +22,7 @@ mod position;
 mod prescribed;
 mod reconsider;
 mod regulated;
+mod without;
 
 use crate::graph::{Edge, Network};
 use crate::state::NetworkState;
@@ -115,6 +116,8 @@ pub struct HydraulicSolver {
     trial_laws: Laws,
     /// What stands for the law of each edge; empty without prescriptions.
     stand: Vec<Stand>,
+    /// An edge through which nothing flows, whatever its law.
+    shut: Option<EdgeId>,
     /// Sign of each prescribed flow in the free edge, where it carries it itself.
     carried: Vec<Option<f64>>,
     /// Whether each prescription was tried with its actuator open in this solve.
@@ -147,6 +150,7 @@ impl HydraulicSolver {
             } else {
                 vec![Stand::Own; edges]
             },
+            shut: None,
             carried: prescribed::carried(network),
             opened: vec![false; network.prescriptions.len()],
             heads: prescribed::Heads::new(network),

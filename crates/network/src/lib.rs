@@ -4,6 +4,7 @@
 //! [`graph::Edge`]s (mass flow). [`hydraulics`] solves pressures and flows, [`transport`] carries
 //! temperatures, [`interface`] couples thermal-only units to edges.
 
+pub mod blocking;
 pub mod buried_pipe;
 pub mod effectiveness;
 pub mod elements;

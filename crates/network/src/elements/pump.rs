@@ -300,6 +300,16 @@ impl Pump {
         self.curve.speed_at(m_flow_kg_s, dp_pa, density_kg_m3, self.speed_max)
     }
 
+    /// Head without flow at relative speed 1, Pa; at others by the square of the speed.
+    pub fn head_without_flow_pa(&self) -> f64 {
+        self.curve.head_max_pa
+    }
+
+    /// Largest relative speed.
+    pub fn speed_max(&self) -> f64 {
+        self.speed_max
+    }
+
     /// Whether the pump holds a value other than its speed.
     pub fn holds(&self) -> bool {
         self.mode != PumpMode::Speed

@@ -93,7 +93,7 @@ enum Follower {
 
 /// The linear answers of a network at an operating point.
 pub struct Linearization {
-    solver: HydraulicSolver,
+    pub(super) solver: HydraulicSolver,
     valves: Valves,
     /// Effect of the position on the head of each edge, Pa per unit.
     head_by_position_pa: Vec<f64>,
@@ -150,9 +150,12 @@ impl Linearization {
     ) -> Result<(), HydraulicError> {
         let solver = &mut self.solver;
         solver.known = false;
-        solver.stand.fill(Stand::Own);
+        solver.clear_stands();
         for (k, prescription) in network.prescriptions.iter().enumerate() {
-            solver.stand[prescription.free.index()] = solver.stand_of(network, state, k);
+            let free = prescription.free.index();
+            if !solver.is_shut(free) {
+                solver.stand[free] = solver.stand_of(network, state, k);
+            }
         }
         solver.evaluate(network, state)?;
         solver.system.factorise(network, &solver.kind, &solver.laws)?;
@@ -251,8 +254,9 @@ impl Linearization {
     }
 
     fn push(&mut self, edge: EdgeId, by_kg_s: f64) {
-        if self.solver.kind[edge.index()] == Kind::Imposed {
-            self.disturbance.pushed_kg_s[edge.index()] += by_kg_s;
+        let i = edge.index();
+        if self.solver.kind[i] == Kind::Imposed && !self.solver.is_shut(i) {
+            self.disturbance.pushed_kg_s[i] += by_kg_s;
         }
     }
 

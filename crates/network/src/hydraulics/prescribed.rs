@@ -145,7 +145,7 @@ impl HydraulicSolver {
         let count = network.prescriptions.len();
         self.known = false;
         // A snapshot continues bit for bit: the stands begin from the state alone.
-        self.stand.fill(Stand::Own);
+        self.clear_stands();
         self.opened.fill(false);
         let mut iterations = 0;
         for round in 0..ROUNDS_TOGETHER + ROUNDS_EACH * count {
@@ -173,6 +173,9 @@ impl HydraulicSolver {
     /// Puts what stands for the law of the free edge of a prescription in its place.
     fn take_stand(&mut self, network: &Network, state: &mut NetworkState, k: usize) {
         let edge = network.prescriptions[k].free.index();
+        if self.is_shut(edge) {
+            return;
+        }
         let (min, max) = limits(network, edge);
         match state.prescribed[k].hold {
             Hold::AtMin => state.place_actuator(edge, min),
@@ -315,6 +318,9 @@ impl HydraulicSolver {
         self.heads.changes.clear();
         for (k, prescription) in network.prescriptions.iter().enumerate() {
             let edge = prescription.free.index();
+            if self.is_shut(edge) {
+                continue;
+            }
             let Prescribed { value, hold } = state.prescribed[k];
             let error = (value - present(network, state, prescription.quantity))
                 / tolerance(prescription.quantity, value);
@@ -369,6 +375,7 @@ impl HydraulicSolver {
         for prescription in &network.prescriptions {
             let edge = prescription.free.index();
             if matches!(self.stand[edge], Stand::Flow(_))
+                && !self.is_shut(edge)
                 && self.system.joins_floating(network, edge)
             {
                 return Err(HydraulicError::Undetermined { edge: prescription.free });
