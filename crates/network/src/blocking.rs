@@ -18,28 +18,26 @@
 //!
 //! **Sources** specification SC-01 (`angelidis2023`).
 
+mod feeders;
+
+pub use feeders::{Feeder, feeders};
+
 use crate::elements::Element;
 use crate::elements::pump::Pump;
-use crate::graph::{Network, NodeKind};
+use crate::graph::Network;
 use crate::hydraulics::HydraulicError;
-use crate::linearize::{Cause, Linearization, Response};
+use crate::linearize::{Linearization, Response};
 use crate::state::NetworkState;
 use anergy_core::ids::EdgeId;
 
 /// A threshold is found within this of the speed.
 const SPEED: f64 = 1e-7;
+/// An influence below this share of the opposing pressure difference is none.
+const ROUNDING: f64 = 1e-9;
 const MAX_ROUNDS: usize = 60;
 
-/// A pump in series with a check valve that lets its flow pass.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Feeder {
-    /// The pump.
-    pub pump: EdgeId,
-    /// The check valve.
-    pub check_valve: EdgeId,
-}
-
-/// How far a feeder is from where its check valve shuts.
+/// How far a feeder is from where its check valve shuts. There is no threshold where the network has no state
+/// without its flow: flows that are given elsewhere come through it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Margin {
     /// Present relative speed of the pump.
@@ -49,12 +47,12 @@ pub struct Margin {
     /// Present flow, kg/s; not positive when it is blocked.
     pub m_flow_kg_s: f64,
     /// The relative speed below which the check valve is shut; above the largest one where none opens it.
-    pub threshold_speed: f64,
+    pub threshold_speed: Option<f64>,
     /// Pressure difference that the rest of the network puts across the pump without its flow, Pa.
-    pub opposing_dp_pa: f64,
+    pub opposing_dp_pa: Option<f64>,
     /// Head of the pump at its present speed without flow, Pa.
     pub head_without_flow_pa: f64,
-    /// What the other actuators do to the opposing pressure difference.
+    /// What the other pumps and sources do to the opposing pressure difference.
     pub influences: Vec<Influence>,
     /// The one among them that holds the feeder back most, if any does.
     pub culprit: Option<EdgeId>,
@@ -62,13 +60,13 @@ pub struct Margin {
 
 impl Margin {
     /// Present speed above the threshold; negative when the feeder is blocked.
-    pub fn speed_margin(&self) -> f64 {
-        self.speed - self.threshold_speed
+    pub fn speed_margin(&self) -> Option<f64> {
+        self.threshold_speed.map(|threshold| self.speed - threshold)
     }
 
     /// Whether the pump runs and the network holds its check valve shut.
     pub fn blocked(&self) -> bool {
-        self.speed > 0.0 && self.speed_margin() < 0.0
+        self.speed > 0.0 && self.speed_margin().is_some_and(|margin| margin < 0.0)
     }
 }
 
@@ -94,50 +92,6 @@ pub struct Limit {
     pub m_flow_kg_s: f64,
 }
 
-/// The feeders of a network, in the order of their pumps.
-pub fn feeders(network: &Network) -> Vec<Feeder> {
-    let mut incident: Vec<Vec<usize>> = vec![Vec::new(); network.nodes.len()];
-    for (i, edge) in network.edges.iter().enumerate() {
-        incident[edge.from.index()].push(i);
-        incident[edge.to.index()].push(i);
-    }
-    let pumps = network.edges.iter().enumerate();
-    pumps
-        .filter(|(_, edge)| matches!(edge.element, Element::Pump(_)))
-        .filter_map(|(pump, _)| {
-            let check_valve = check_valve_of(network, &incident, pump)?;
-            let (pump, check_valve) = (EdgeId::from_index(pump), EdgeId::from_index(check_valve));
-            Some(Feeder { pump, check_valve })
-        })
-        .collect()
-}
-
-/// The nearest check valve that all water of the pump passes, in its direction.
-fn check_valve_of(network: &Network, incident: &[Vec<usize>], pump: usize) -> Option<usize> {
-    let ends = &network.edges[pump];
-    for downstream in [true, false] {
-        let (mut at, mut last) = (if downstream { ends.to } else { ends.from }, pump);
-        // Walks away from the pump as long as there is one way on.
-        for _ in 0..network.edges.len() {
-            let [a, b] = incident[at.index()][..] else { break };
-            if network.nodes[at.index()].kind != NodeKind::Junction || a == b {
-                break;
-            }
-            let next = if a == last { b } else { a };
-            let edge = &network.edges[next];
-            let forward = (edge.from == at) == downstream;
-            match edge.element {
-                Element::CheckValve(_) if forward => return Some(next),
-                // Against it nothing flows; a second pump has its own margin.
-                Element::CheckValve(_) | Element::Pump(_) => break,
-                _ => {}
-            }
-            (at, last) = (if edge.from == at { edge.to } else { edge.from }, next);
-        }
-    }
-    None
-}
-
 /// Finds margins at an operating point; keeps its memory between questions.
 pub struct Blocking {
     feeders: Vec<Feeder>,
@@ -149,6 +103,7 @@ pub struct Blocking {
     /// The state of the last solve.
     state: NetworkState,
     response: Response,
+    change_pa: Vec<f64>,
 }
 
 impl Blocking {
@@ -173,6 +128,7 @@ impl Blocking {
             state: here.clone(),
             here,
             response: Response::new(network),
+            change_pa: Vec::new(),
         })
     }
 
@@ -181,42 +137,52 @@ impl Blocking {
         &self.feeders
     }
 
-    /// How far a feeder is from where its check valve shuts. `None` where the network has no state without
-    /// its flow: flows that are given elsewhere come through it.
+    /// How far a feeder is from where its check valve shuts.
     ///
     /// # Errors
-    /// When the network without its flow cannot be solved for another reason.
-    pub fn margin(
-        &mut self,
-        network: &Network,
-        feeder: Feeder,
-    ) -> Result<Option<Margin>, HydraulicError> {
-        self.back(network);
-        let Some(opposing_dp_pa) = self.opposing_dp_pa(network, feeder)? else { return Ok(None) };
-        let Some((pump, head_pa)) = pump_of(network, feeder) else { return Ok(None) };
+    /// When the network without its flow cannot be solved, though it could be.
+    pub fn margin(&mut self, network: &Network, feeder: Feeder) -> Result<Margin, HydraulicError> {
+        let drives = std::mem::take(&mut self.drives);
+        let influences = self.influences(network, feeder, &drives);
+        self.drives = drives;
+        let (opposing_dp_pa, influences) = influences?;
+        let (pump, head_pa) = pump_of(network, feeder);
         let at = self.here.edge_state(network, feeder.pump.index());
         let m_flow_kg_s = self.here.m_flow_kg_s[feeder.pump.index()];
-        let speed = pump.speed(m_flow_kg_s, &at);
-        let threshold_speed = threshold(opposing_dp_pa, head_pa);
-        let mut influences = Vec::with_capacity(self.drives.len());
-        for k in 0..self.drives.len() {
-            if self.drives[k] != feeder.pump {
-                influences.push(self.influence(network, feeder, self.drives[k]));
-            }
-        }
+        let speed = pump.map_or(0.0, |pump| pump.speed(m_flow_kg_s, &at));
         let worst = influences.iter().max_by(|a, b| a.weight_pa.total_cmp(&b.weight_pa));
-        let rounding = 1e-9 * opposing_dp_pa.abs();
+        let rounding = ROUNDING * opposing_dp_pa.unwrap_or(0.0).abs();
         let culprit = worst.filter(|worst| worst.weight_pa > rounding).map(|worst| worst.edge);
-        Ok(Some(Margin {
+        Ok(Margin {
             speed,
-            speed_max: pump.speed_max(),
+            speed_max: pump.map_or(0.0, Pump::speed_max),
             m_flow_kg_s,
-            threshold_speed,
+            threshold_speed: opposing_dp_pa.map(|dp| threshold(dp, head_pa)),
             opposing_dp_pa,
             head_without_flow_pa: speed * speed * head_pa,
             influences,
             culprit,
-        }))
+        })
+    }
+
+    /// The opposing pressure difference of a feeder, Pa, if there is one, and what some actuators do to it.
+    ///
+    /// # Errors
+    /// As [`Self::margin`].
+    pub fn influences(
+        &mut self,
+        network: &Network,
+        feeder: Feeder,
+        edges: &[EdgeId],
+    ) -> Result<(Option<f64>, Vec<Influence>), HydraulicError> {
+        self.back();
+        let opposing_dp_pa = self.opposing_dp_pa(network, feeder)?;
+        let mut influences = Vec::new();
+        if opposing_dp_pa.is_some() {
+            let all = self.influences_here(network, feeder, edges);
+            influences.extend(all.filter(|influence| influence.edge != feeder.pump));
+        }
+        Ok((opposing_dp_pa, influences))
     }
 
     /// Thresholds of a feeder over positions of another actuator; `None` where there is none.
@@ -230,8 +196,8 @@ impl Blocking {
         edge: EdgeId,
         positions: &[f64],
     ) -> Result<Vec<Option<f64>>, HydraulicError> {
-        self.back(network);
-        let Some((_, head_pa)) = pump_of(network, feeder) else { return Ok(Vec::new()) };
+        self.back();
+        let (_, head_pa) = pump_of(network, feeder);
         let at = |this: &mut Self, position: &f64| {
             this.state.place_actuator(edge.index(), *position);
             let opposing_dp_pa = this.opposing_dp_pa(network, feeder)?;
@@ -252,8 +218,8 @@ impl Blocking {
         feeder: Feeder,
         edges: &[EdgeId],
     ) -> Result<Option<Limit>, HydraulicError> {
-        self.back(network);
-        let Some((pump, head_pa)) = pump_of(network, feeder) else { return Ok(None) };
+        self.back();
+        let (pump, head_pa) = pump_of(network, feeder);
         let max = |edge: EdgeId| {
             let actuator = network.edges[edge.index()].element.actuator();
             actuator.map_or(1.0, |actuator| actuator.max)
@@ -269,7 +235,7 @@ impl Blocking {
         let most = ends.fold(f64::INFINITY, f64::min);
         let i = feeder.pump.index();
         let at = self.here.edge_state(network, i);
-        let speed = pump.speed(self.here.m_flow_kg_s[i], &at);
+        let speed = pump.map_or(0.0, |pump| pump.speed(self.here.m_flow_kg_s[i], &at));
         // Threshold less speed, and its change with the factor.
         let miss = |this: &mut Self, factor: f64| -> Result<Option<(f64, f64)>, HydraulicError> {
             for (edge, whole) in edges.iter().zip(&whole) {
@@ -277,12 +243,10 @@ impl Blocking {
             }
             let Some(opposing) = this.opposing_dp_pa(network, feeder)? else { return Ok(None) };
             let threshold = threshold(opposing, head_pa);
-            let by_factor: f64 = edges
-                .iter()
+            let influences = this.influences_here(network, feeder, edges);
+            let by_factor: f64 = influences
                 .zip(&whole)
-                .map(|(e, whole)| {
-                    whole * this.influence(network, feeder, *e).opposing_dp_by_position_pa
-                })
+                .map(|(influence, whole)| whole * influence.opposing_dp_by_position_pa)
                 .sum();
             // d sqrt(dp) = d dp sqrt(dp)/(2 dp)
             let slope = if opposing > 0.0 { 0.5 * threshold / opposing * by_factor } else { 0.0 };
@@ -337,14 +301,13 @@ impl Blocking {
     }
 
     /// Back to the operating point.
-    fn back(&mut self, network: &Network) {
+    fn back(&mut self) {
         let Self { state, here, .. } = self;
         state.position.clone_from(&here.position);
         state.m_flow_kg_s.clone_from(&here.m_flow_kg_s);
         state.p_pa.clone_from(&here.p_pa);
         state.prescribed.clone_from(&here.prescribed);
         state.regulated.clone_from(&here.regulated);
-        debug_assert_eq!(network.edges.len(), state.position.len());
     }
 
     /// What the rest of the network puts across the pump of a feeder without its flow, Pa; `None` where it
@@ -363,21 +326,29 @@ impl Blocking {
         }
     }
 
-    /// Influence of an actuator at the last solve.
-    fn influence(&mut self, network: &Network, feeder: Feeder, edge: EdgeId) -> Influence {
-        self.linearization.respond(network, Cause::Position(edge), &mut self.response);
-        let opposing_dp_by_position_pa = -self.response.dp_pa(network, feeder.pump);
-        let weight_pa = opposing_dp_by_position_pa * self.state.position[edge.index()];
-        Influence { edge, opposing_dp_by_position_pa, weight_pa }
+    /// Influences of actuators at the last solve.
+    fn influences_here(
+        &mut self,
+        network: &Network,
+        feeder: Feeder,
+        edges: &[EdgeId],
+    ) -> impl Iterator<Item = Influence> {
+        let Self { linearization, response, change_pa, state, .. } = self;
+        linearization.across_shut(network, feeder.pump, edges, response, change_pa);
+        edges.iter().zip(change_pa).map(|(&edge, change_pa)| {
+            let opposing_dp_by_position_pa = -*change_pa;
+            let weight_pa = opposing_dp_by_position_pa * state.position[edge.index()];
+            Influence { edge, opposing_dp_by_position_pa, weight_pa }
+        })
     }
 }
 
 /// The pump of a feeder, and its head without flow at relative speed 1, Pa.
-fn pump_of(network: &Network, feeder: Feeder) -> Option<(&Pump, f64)> {
+fn pump_of(network: &Network, feeder: Feeder) -> (Option<&Pump>, f64) {
     let edge = &network.edges[feeder.pump.index()];
     match &edge.element {
-        Element::Pump(pump) => Some((pump, edge.loss_factor * pump.head_without_flow_pa())),
-        _ => None,
+        Element::Pump(pump) => (Some(pump), edge.loss_factor * pump.head_without_flow_pa()),
+        _ => (None, 0.0),
     }
 }
 

@@ -1,7 +1,9 @@
 //! Who blocks whom, which loops will hunt, and how far it is to the limit: without simulating.
 //!
-//! The operating point is the steady state of the model; [`hunting`] takes the loops there apart.
+//! The operating point is the steady state of the model; [`hunting`] takes the loops there apart, [`blocking`] the
+//! feeders.
 
+pub mod blocking;
 mod chain;
 mod law;
 mod loops;

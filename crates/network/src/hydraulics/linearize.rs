@@ -192,6 +192,37 @@ impl Linearization {
         }
     }
 
+    /// Change of `p_a - p_b` of the edge that is shut ([`Self::solve_without`]) per unit of the position of each of
+    /// some other edges, Pa. By reciprocity one answer has them all: that to 1 kg/s through the shut edge; where
+    /// something follows by itself, each edge has its own.
+    pub(crate) fn across_shut(
+        &mut self,
+        network: &Network,
+        shut: EdgeId,
+        edges: &[EdgeId],
+        response: &mut Response,
+        change_pa: &mut Vec<f64>,
+    ) {
+        change_pa.clear();
+        if !self.followers.is_empty() {
+            for edge in edges {
+                self.respond(network, Cause::Position(*edge), response);
+                change_pa.push(response.dp_pa(network, shut));
+            }
+            return;
+        }
+        self.disturbance.clear();
+        self.disturbance.pushed_kg_s[shut.index()] = 1.0;
+        self.answer(network, response);
+        change_pa.extend(edges.iter().map(|edge| {
+            match (&network.edges[edge.index()].element, self.solver.kind[edge.index()]) {
+                (Element::FlowSource(_), _) => response.dp_pa(network, *edge),
+                (_, Kind::Imposed) => 0.0,
+                _ => self.head_by_position(network, *edge) * response.m_flow_kg_s[edge.index()],
+            }
+        }));
+    }
+
     /// How far a check valve is from where the answers lose their meaning: the check valve that would open
     /// or close first by the linear answer to a cause, and the change of the cause at which it would.
     /// `None` where no check valve changes its flow.

@@ -332,8 +332,11 @@ impl HydraulicSolver {
                     Place::Above => self.heads.changes.push((f64::INFINITY, k, Hold::AtMax)),
                     Place::Driven => {
                         // More is wanted than comes by itself: open; less: shut; unless that was wrong.
+                        // A flow that the edge carries itself has no law here, but rises with its head.
                         self.system.respond(edge, &self.laws);
-                        let by_head = self.response(prescription.quantity, prescription.free);
+                        let by_head = self.carried[k].unwrap_or_else(|| {
+                            self.response(prescription.quantity, prescription.free)
+                        });
                         let open = (state.m_flow_kg_s[edge] * by_head > 0.0) != self.opened[k];
                         self.opened[k] |= open;
                         let hold = if open { Hold::AtMax } else { Hold::AtMin };
