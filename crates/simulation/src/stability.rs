@@ -8,6 +8,7 @@ mod chain;
 mod law;
 mod loops;
 mod modes;
+mod secant;
 
 use crate::build::build;
 use crate::channels::Source;

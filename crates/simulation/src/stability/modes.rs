@@ -9,6 +9,7 @@
 //! `skogestad2005` (generalised Nyquist criterion).
 
 use super::loops::Loops;
+use super::secant::secant;
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -18,8 +19,6 @@ type C64 = Complex<f64>;
 const PER_DECADE: usize = 40;
 /// Modes that are refined where loops differ.
 const REFINED: usize = 8;
-const MAX_SECANT: usize = 40;
-const CLOSE: f64 = 1e-10;
 /// Modes closer than this, relative, are one.
 const SAME: f64 = 1e-6;
 /// A mode that moves less than this between growing and decaying has no period.
@@ -253,29 +252,6 @@ fn follow(scalar: &Scalar, limit: Limit) -> Option<C64> {
         }
     }
     Some(s)
-}
-
-/// A zero of a function, from a start.
-fn secant(f: impl Fn(C64) -> C64, start: C64) -> Option<C64> {
-    let mut a = start;
-    let mut b = start + C64::new(1e-4, 1e-4) * start.norm();
-    let (mut fa, mut fb) = (f(a), f(b));
-    for _ in 0..MAX_SECANT {
-        let slope = (fb - fa) / (b - a);
-        let step = fb / slope;
-        if !step.re.is_finite() || !step.im.is_finite() {
-            return (fb.norm() == 0.0).then_some(b);
-        }
-        // No further than half the way to the origin: modes lie around the start.
-        let step = step * (0.5 * b.norm() / step.norm()).min(1.0);
-        (a, fa) = (b, fb);
-        b -= step;
-        fb = f(b);
-        if step.norm() <= CLOSE * b.norm() {
-            return Some(b);
-        }
-    }
-    None
 }
 
 /// `1/(b^H (1 + k L)^-1 b)`.
