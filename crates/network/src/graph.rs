@@ -77,6 +77,11 @@ impl Edge {
         self.loss_factor * self.element.loss_by_position(m_flow_kg_s, state)
     }
 
+    /// Flow from which a first solve begins, kg/s.
+    pub fn start_m_flow_kg_s(&self) -> f64 {
+        0.1 * self.element.m_flow_nominal_kg_s()
+    }
+
     /// The node at the end the water leaves through.
     #[inline]
     pub fn downstream(&self, m_flow_kg_s: f64) -> NodeId {

@@ -17,6 +17,8 @@ mod assemble;
 mod diagnosis;
 mod error;
 mod ideal;
+mod islands;
+mod line_search;
 pub mod linearize;
 mod position;
 mod prescribed;
@@ -49,18 +51,15 @@ const REFERENCE_EXCHANGE_KG_S: f64 = 1e-6;
 /// closed valves.
 const SLOPE_FLOOR: f64 = 1e-9;
 const SLOPE_CAP: f64 = 1e16;
-/// A step is accepted when the slope of the content has fallen to this share.
-const CONTENT_SLOPE_SHARE: f64 = 0.5;
 /// A full step that overshoots by less than this share is accepted in the first iterations; laws with
 /// kinks could go round in circles so.
 const OVERSHOOT_SHARE: f64 = 0.1;
 const HASTY_ITERATIONS: u32 = 12;
-/// Rounding of a pressure difference, relative to the largest pressure.
-const PRESSURE_ROUNDING: f64 = 2e-15;
 /// Beyond this pressure difference no component holds, and the rounding of pressures moves water.
 const ABSURD_PA: f64 = 1e10;
+/// Iterations from given flows, and from those of a first solve.
+const MAX_ITERATIONS_GIVEN: u32 = 100;
 const MAX_ITERATIONS: u32 = 300;
-const MAX_LINE_SEARCH: u32 = 40;
 
 /// How a solve went.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -88,17 +87,6 @@ enum Kind {
 struct Laws {
     loss: Vec<f64>,
     slope: Vec<f64>,
-}
-
-/// What a trial step found.
-struct Trial {
-    /// Slope of the content along the step.
-    content_slope: f64,
-    /// Largest pressure residual, Pa.
-    residual_pa: f64,
-    /// Largest flow that an edge would change by if its ends kept their pressures, over the tolerance;
-    /// misses within the rounding of the pressures do not count.
-    correction: f64,
 }
 
 /// The solver with its factorisation and work space; holds no state of the network.
@@ -194,16 +182,43 @@ impl HydraulicSolver {
         }
     }
 
-    /// Solves with the laws, or what stands for them.
+    /// Solves with the laws, or what stands for them: from the flows of the state, and where they lead
+    /// nowhere from those of a first solve.
     fn solve_laws(
         &mut self,
         network: &Network,
         state: &mut NetworkState,
     ) -> Result<HydraulicReport, HydraulicError> {
+        let mut starts = state.m_flow_kg_s.iter().zip(&network.edges);
+        let first = starts.all(|(m, edge)| *m == edge.start_m_flow_kg_s());
+        if !first && let Some(report) = self.iterate(network, state, MAX_ITERATIONS_GIVEN)? {
+            return Ok(report);
+        }
+        for (m, edge) in state.m_flow_kg_s.iter_mut().zip(&network.edges) {
+            *m = edge.start_m_flow_kg_s();
+        }
+        self.system.forget_pressures(state);
+        match self.iterate(network, state, MAX_ITERATIONS)? {
+            Some(report) => {
+                let before = if first { 0 } else { MAX_ITERATIONS_GIVEN };
+                let iterations = before + report.iterations;
+                Ok(HydraulicReport { iterations, ..report })
+            }
+            None => Err(self.not_converged(network, state)),
+        }
+    }
+
+    /// Newton from the flows of the state; none at the limit of iterations.
+    fn iterate(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+        most: u32,
+    ) -> Result<Option<HydraulicReport>, HydraulicError> {
         self.evaluate(network, state)?;
         self.system.begin(network, state, &self.kind, &self.laws)?;
         let mut mass_balanced = false;
-        for iteration in 1..=MAX_ITERATIONS {
+        for iteration in 1..=most {
             let overshoot = if iteration <= HASTY_ITERATIONS { OVERSHOOT_SHARE } else { 0.0 };
             self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
             let trial = self.take_step(network, state, mass_balanced, overshoot)?;
@@ -215,21 +230,22 @@ impl HydraulicSolver {
             let largest_p_pa = self.system.largest_p_pa();
             if trial.correction <= 1.0
                 && trial.residual_pa <= RESIDUAL_PA + RESIDUAL_RELATIVE * largest_p_pa
+                && self.surrounds(network, state)
             {
                 let (mass_residual_kg_s, _) = self.system.mass_residual(state);
                 if mass_residual_kg_s <= MASS_RESIDUAL_KG_S {
                     self.known_m_kg_s.copy_from_slice(&state.m_flow_kg_s);
                     self.known = self.stand.is_empty();
                     self.system.close(network, state);
-                    return Ok(HydraulicReport {
+                    return Ok(Some(HydraulicReport {
                         iterations: iteration,
                         residual_pa: trial.residual_pa,
                         mass_residual_kg_s,
-                    });
+                    }));
                 }
             }
         }
-        Err(self.not_converged(network, state))
+        Ok(None)
     }
 
     /// What an edge answers, or what stands for it.
@@ -266,97 +282,5 @@ impl HydraulicSolver {
             self.laws.slope[i] = law.slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
         }
         Ok(())
-    }
-
-    /// Moves the flows along the Newton step.
-    fn take_step(
-        &mut self,
-        network: &Network,
-        state: &mut NetworkState,
-        line_search: bool,
-        overshoot: f64,
-    ) -> Result<Trial, HydraulicError> {
-        // Slope of the content at the start of the step; pressures cancel, since the step has no net
-        // inflow anywhere: g(alpha) = sum step (phi(m + alpha step) - (p_a - p_b) + rho g dz).
-        let mut start = 0.0;
-        let mut moved = 0.0;
-        for (i, step) in self.step.iter().enumerate() {
-            if self.kind[i] == Kind::Law {
-                moved += step.abs();
-                start -= step * step * self.laws.slope[i];
-            }
-        }
-        let mut trial = self.evaluate_trial(network, state, 1.0)?;
-        // Below the rounding of the pressures the slope says nothing, and only a full step balances mass.
-        let rounding = PRESSURE_ROUNDING * self.system.largest_p_pa() * moved;
-        if line_search && trial.content_slope > rounding - overshoot * start {
-            // The full step overshoots the minimum of the content along it: false position and halving.
-            let (mut low, mut low_slope, mut high, mut high_slope) =
-                (0.0, start, 1.0, trial.content_slope);
-            for i in 0..MAX_LINE_SEARCH {
-                let secant = low + (high - low) * low_slope / (low_slope - high_slope);
-                let margin = 0.1 * (high - low);
-                let alpha = if i % 2 == 0 {
-                    secant.clamp(low + margin, high - margin)
-                } else {
-                    0.5 * (low + high)
-                };
-                trial = self.evaluate_trial(network, state, alpha)?;
-                // The content has surely fallen: it is convex, so it fell by -low_slope low at least and
-                // rose by content_slope (alpha - low) at most.
-                let falls = trial.content_slope * (alpha - low).max(0.0) <= -0.5 * low_slope * low;
-                if falls && trial.content_slope.abs() <= -CONTENT_SLOPE_SHARE * start {
-                    break;
-                }
-                if trial.content_slope < 0.0 {
-                    (low, low_slope) = (alpha, trial.content_slope);
-                } else {
-                    (high, high_slope) = (alpha, trial.content_slope);
-                }
-            }
-        }
-        std::mem::swap(&mut state.m_flow_kg_s, &mut self.trial_m_kg_s);
-        std::mem::swap(&mut self.laws, &mut self.trial_laws);
-        Ok(trial)
-    }
-
-    /// Laws at the flows that this share of the step leads to.
-    fn evaluate_trial(
-        &mut self,
-        network: &Network,
-        state: &NetworkState,
-        share: f64,
-    ) -> Result<Trial, HydraulicError> {
-        let rounding = PRESSURE_ROUNDING * self.system.largest_p_pa();
-        let mut trial = Trial { content_slope: 0.0, residual_pa: 0.0, correction: 0.0 };
-        for (i, edge) in network.edges.iter().enumerate() {
-            let m = state.m_flow_kg_s[i] + share * self.step[i];
-            self.trial_m_kg_s[i] = m;
-            if self.kind[i] != Kind::Law {
-                self.trial_laws.loss[i] = self.laws.loss[i];
-                self.trial_laws.slope[i] = self.laws.slope[i];
-                continue;
-            }
-            let Characteristic::PressureLoss(law) =
-                self.answer(edge, i, m, &state.edge_state(network, i))
-            else {
-                return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
-            };
-            let miss = self.system.driving_pa(state, i) - law.value;
-            let slope = law.slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
-            self.trial_laws.loss[i] = law.value;
-            self.trial_laws.slope[i] = slope;
-            trial.content_slope -= self.step[i] * miss;
-            let size = miss.abs();
-            if !size.is_finite() {
-                return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
-            }
-            trial.residual_pa = trial.residual_pa.max(size);
-            let tolerance = slope * (CORRECTION_KG_S + CORRECTION_RELATIVE * m.abs());
-            if size - rounding > trial.correction * tolerance {
-                trial.correction = (size - rounding) / tolerance;
-            }
-        }
-        Ok(trial)
     }
 }

@@ -1,6 +1,6 @@
 //! Everything of a network that changes during a run: plain data, cloned by a snapshot.
 
-use crate::graph::{Network, NodeKind, Regulator};
+use crate::graph::{Edge, Network, NodeKind, Regulator};
 use crate::soil::SoilRings;
 use crate::transport::cells::Cells;
 use crate::transport::parcels::Parcels;
@@ -122,20 +122,15 @@ impl NetworkState {
     /// Everything at rest and at one temperature; pressures at zero.
     pub fn new(network: &Network, initial_k: f64) -> Self {
         let (nodes, edges, ports) = (network.nodes.len(), network.edges.len(), network.ports.len());
-        let initial_position = |edge: &crate::graph::Edge| {
-            edge.element.actuator().map_or(0.0, |actuator| actuator.initial_position)
-        };
+        let initial_position =
+            |edge: &Edge| edge.element.actuator().map_or(0.0, |actuator| actuator.initial_position);
         let mut position: Vec<f64> = network.edges.iter().map(initial_position).collect();
         for regulator in &network.regulators {
             // Without pressure the spring opens it.
             position[regulator.edge.index()] = 1.0;
         }
         Self {
-            m_flow_kg_s: network
-                .edges
-                .iter()
-                .map(|edge| 0.1 * edge.element.m_flow_nominal_kg_s())
-                .collect(),
+            m_flow_kg_s: network.edges.iter().map(Edge::start_m_flow_kg_s).collect(),
             p_pa: vec![0.0; nodes],
             actuator_lag: position.clone(),
             position,

@@ -40,11 +40,7 @@ impl NodalSystem {
         kind: &[Kind],
         laws: &Laws,
     ) -> Result<(), HydraulicError> {
-        if self.kind_before != kind {
-            self.kind_before.clear();
-            self.kind_before.extend_from_slice(kind);
-            self.find_islands(network, kind);
-        }
+        self.islands.update(network, kind);
         let values = self.conductances.values_mut();
         values.fill(0.0);
         let mut largest_conductance = 0.0_f64;
@@ -62,7 +58,7 @@ impl NodalSystem {
     /// An island without fixed pressure keeps its level: no flow passes this conductance.
     pub(super) fn tie_floating(&mut self, largest_conductance: f64) {
         let values = self.conductances.values_mut();
-        for &root in &self.floating {
+        for &root in self.islands.floating() {
             let slot = self.to_fixed[self.unknown_of_node[root as usize] as usize];
             values[slot as usize] += largest_conductance.max(1e-12);
         }
