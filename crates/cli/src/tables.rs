@@ -3,7 +3,6 @@
 use crate::output::line;
 use anergy_core::recorder::{Event, Recording};
 use anergy_core::units::l_min;
-use anergy_simulation::model::Model;
 use anergy_simulation::steady::Steady;
 use serde_json::Value;
 
@@ -39,29 +38,29 @@ pub fn print_table(header: &[&str], rows: &[Vec<String>]) {
 }
 
 /// Nodes and edges of a steady state.
-pub fn print_steady(model: &Model, steady: &Steady) {
-    let density = model.medium.density_kg_m3;
+pub fn print_steady(density_kg_m3: f64, steady: &Steady) {
     let nodes: Vec<Vec<String>> = steady
         .nodes
         .iter()
         .map(|node| {
             vec![
-                node.id.clone(),
+                node.id.to_string(),
                 format!("{:.4}", node.p_pa / 1e5),
                 format!("{:.2}", node.t_k - 273.15),
             ]
         })
         .collect();
     print_table(&["node", "p bar", "T degC"], &nodes);
+    drop(nodes);
     line!("");
     let edges: Vec<Vec<String>> = steady
         .edges
         .iter()
         .map(|edge| {
             vec![
-                edge.id.clone(),
-                edge.kind.clone(),
-                format!("{:.3}", l_min(edge.m_flow_kg_s, density)),
+                edge.id.to_string(),
+                edge.kind.to_string(),
+                format!("{:.3}", l_min(edge.m_flow_kg_s, density_kg_m3)),
                 format!("{:.4}", edge.dp_pa / 1e5),
             ]
         })

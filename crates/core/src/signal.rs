@@ -1,14 +1,16 @@
 //! Input signals: commands and boundary values by name, resolved to indices at build.
 
 use crate::ids::SignalId;
-use std::collections::HashMap;
+use hashbrown::HashTable;
+use smol_str::SmolStr;
+use std::hash::{BuildHasher, RandomState};
 use thiserror::Error;
 
 /// What is known of one input signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SignalSpec {
     /// `component.quantity`, for example `sf2.feed_in_pump.speed`.
-    pub name: String,
+    pub name: SmolStr,
     /// Suffix of the SI unit the signal is given in (`kg_s`, `k`, `w`, `pa`), empty for ratios.
     pub unit: &'static str,
     /// Value while nothing drives the signal.
@@ -24,7 +26,7 @@ pub struct SignalSpec {
 #[error("the signal \"{name}\" exists already")]
 pub struct DoubledSignal {
     /// The name.
-    pub name: String,
+    pub name: SmolStr,
     /// The signal that has it.
     pub id: SignalId,
 }
@@ -33,7 +35,9 @@ pub struct DoubledSignal {
 #[derive(Debug, Clone, Default)]
 pub struct SignalTable {
     specs: Vec<SignalSpec>,
-    index: HashMap<String, SignalId>,
+    /// Ids by the hash of the name, which stands in `specs` only.
+    index: HashTable<SignalId>,
+    hasher: RandomState,
 }
 
 impl SignalTable {
@@ -42,18 +46,21 @@ impl SignalTable {
     /// # Errors
     /// When a signal of this name exists: one of the two could never be driven.
     pub fn add(&mut self, spec: SignalSpec) -> Result<SignalId, DoubledSignal> {
-        if let Some(&id) = self.index.get(&spec.name) {
+        if let Some(id) = self.find(&spec.name) {
             return Err(DoubledSignal { name: spec.name, id });
         }
         let id = SignalId::from_index(self.specs.len());
-        self.index.insert(spec.name.clone(), id);
-        self.specs.push(spec);
+        let Self { specs, index, hasher } = self;
+        let hash = hasher.hash_one(spec.name.as_str());
+        specs.push(spec);
+        index.insert_unique(hash, id, |id| hasher.hash_one(specs[id.index()].name.as_str()));
         Ok(id)
     }
 
     /// The id of a name.
     pub fn find(&self, name: &str) -> Option<SignalId> {
-        self.index.get(name).copied()
+        let is = |id: &SignalId| self.specs[id.index()].name == name;
+        self.index.find(self.hasher.hash_one(name), is).copied()
     }
 
     /// What is known of a signal.

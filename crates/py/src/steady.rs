@@ -11,14 +11,15 @@ pub fn to_python<'py>(py: Python<'py>, steady: &Steady) -> PyResult<Bound<'py, P
     let column =
         |value: &dyn Fn(usize) -> f64, rows: usize| PyArray1::from_iter(py, (0..rows).map(value));
     let n = steady.nodes.len();
-    nodes.set_item("id", steady.nodes.iter().map(|node| &node.id).collect::<Vec<_>>())?;
+    nodes.set_item("id", steady.nodes.iter().map(|node| node.id.as_str()).collect::<Vec<_>>())?;
     nodes.set_item("p_pa", column(&|i| steady.nodes[i].p_pa, n))?;
     nodes.set_item("t_k", column(&|i| steady.nodes[i].t_k, n))?;
     nodes.set_item("elevation_m", column(&|i| steady.nodes[i].elevation_m, n))?;
     let edges = PyDict::new(py);
     let n = steady.edges.len();
-    edges.set_item("id", steady.edges.iter().map(|edge| &edge.id).collect::<Vec<_>>())?;
-    edges.set_item("kind", steady.edges.iter().map(|edge| &edge.kind).collect::<Vec<_>>())?;
+    edges.set_item("id", steady.edges.iter().map(|edge| edge.id.as_str()).collect::<Vec<_>>())?;
+    edges
+        .set_item("kind", steady.edges.iter().map(|edge| edge.kind.as_str()).collect::<Vec<_>>())?;
     edges.set_item("m_flow_kg_s", column(&|i| steady.edges[i].m_flow_kg_s, n))?;
     edges.set_item("dp_pa", column(&|i| steady.edges[i].dp_pa, n))?;
     let module = py.import("anergy.steady")?;

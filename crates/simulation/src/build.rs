@@ -85,18 +85,20 @@ impl Builder<'_> {
 
     fn check_names(&mut self) {
         let model = self.model;
-        let nodes = model.nodes.iter().map(|node| ("node", &node.entry.id, &node.place));
+        let nodes = model.nodes.iter().map(|node| ("node", node.entry.id.as_str(), &node.place));
         self.check_doubled(nodes.collect());
         let others = model
             .edges
             .iter()
-            .map(|edge| ("edge", &edge.id, &edge.place))
-            .chain(model.units.iter().map(|unit| ("unit", &unit.id, &unit.place)))
-            .chain(model.interfaces.iter().map(|i| ("interface", &i.id, &i.place)))
-            .chain(model.sensors.iter().map(|s| ("sensor", &s.entry.id, &s.place)))
-            .chain(model.controllers.iter().map(|c| ("controller", &c.id, &c.place)))
-            .chain(model.worst_points.iter().map(|p| ("worst point", &p.entry.id, &p.place)))
-            .chain(model.prescriptions.iter().map(|p| ("prescription", &p.id, &p.place)));
+            .map(|edge| ("edge", edge.id.as_str(), &edge.place))
+            .chain(model.units.iter().map(|unit| ("unit", unit.id.as_str(), &unit.place)))
+            .chain(model.interfaces.iter().map(|i| ("interface", i.id.as_str(), &i.place)))
+            .chain(model.sensors.iter().map(|s| ("sensor", s.entry.id.as_str(), &s.place)))
+            .chain(model.controllers.iter().map(|c| ("controller", c.id.as_str(), &c.place)))
+            .chain(
+                model.worst_points.iter().map(|p| ("worst point", p.entry.id.as_str(), &p.place)),
+            )
+            .chain(model.prescriptions.iter().map(|p| ("prescription", p.id.as_str(), &p.place)));
         self.check_doubled(others.collect());
         if model.edges.is_empty() && self.problems.is_empty() {
             let hint = "add a [[trench]], a [[station]] or an [[edge]]".to_owned();
@@ -104,7 +106,7 @@ impl Builder<'_> {
         }
     }
 
-    fn check_doubled(&mut self, named: Vec<(&str, &String, &Place)>) {
+    fn check_doubled(&mut self, named: Vec<(&str, &str, &Place)>) {
         let mut seen: HashMap<&str, &str> = HashMap::new();
         for (what, id, place) in named {
             if let Some(before) = seen.insert(id, what) {

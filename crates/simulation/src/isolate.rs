@@ -120,9 +120,9 @@ impl Model {
         let kept: HashSet<String> = model
             .edges
             .iter()
-            .map(|edge| edge.id.clone())
-            .chain(model.nodes.iter().map(|node| node.entry.id.clone()))
-            .chain(model.units.iter().map(|unit| unit.id.clone()))
+            .map(|edge| edge.id.to_string())
+            .chain(model.nodes.iter().map(|node| node.entry.id.to_string()))
+            .chain(model.units.iter().map(|unit| unit.id.to_string()))
             .chain(model.interfaces.iter().map(|interface| interface.id.clone()))
             .chain(std::iter::once("ground".to_owned()))
             .collect();

@@ -20,6 +20,7 @@ use anergy_core::medium::Medium;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
+use smol_str::SmolStr;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ pub struct NodeSpec {
     /// Its fields.
     pub entry: NodeEntry,
     /// The site it belongs to; empty for others.
-    pub site: String,
+    pub site: SmolStr,
     /// Where it stands.
     pub place: Place,
 }
@@ -38,17 +39,17 @@ pub struct NodeSpec {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeSpec {
     /// Name.
-    pub id: String,
+    pub id: SmolStr,
     /// Node at port a.
-    pub from: String,
+    pub from: SmolStr,
     /// Node at port b.
-    pub to: String,
+    pub to: SmolStr,
     /// The component.
     pub params: ElementParams,
     /// Multiplies the pressure loss; 1 leaves the law alone.
     pub loss_factor: f64,
     /// The station it belongs to; empty for others.
-    pub station: String,
+    pub station: SmolStr,
     /// Where it stands.
     pub place: Place,
 }
@@ -57,9 +58,9 @@ pub struct EdgeSpec {
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnitSpec {
     /// Name.
-    pub id: String,
+    pub id: SmolStr,
     /// The edge it is connected to.
-    pub port: String,
+    pub port: SmolStr,
     /// The unit.
     pub params: EquipmentParams,
     /// Where it stands.

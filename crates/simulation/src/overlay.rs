@@ -7,6 +7,7 @@ use crate::model_file::GroundEntry;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
+use smol_str::{SmolStr, format_smolstr};
 use thiserror::Error;
 
 /// One change of a model.
@@ -122,12 +123,12 @@ impl Model {
             Change::InsertEdge { id, from, to, params } => {
                 self.check_free(id)?;
                 self.edges.push(EdgeSpec {
-                    id: id.clone(),
-                    from: from.clone(),
-                    to: to.clone(),
+                    id: id.into(),
+                    from: from.into(),
+                    to: to.into(),
                     params: params.clone(),
                     loss_factor: 1.0,
-                    station: String::new(),
+                    station: SmolStr::default(),
                     place: Place::default(),
                 });
                 Ok(())
@@ -177,12 +178,12 @@ impl Model {
     ) -> Result<(), OverlayError> {
         self.check_free(id)?;
         let spec = self.edge_mut(edge)?;
-        let inner = format!("{id}.inner");
+        let inner = format_smolstr!("{id}.inner");
         let end = std::mem::replace(&mut spec.to, inner.clone());
         let station = spec.station.clone();
         let before = self.nodes.iter().find(|node| node.entry.id == end).cloned();
         let Some(mut node) = before else {
-            return Err(OverlayError::UnknownParameter { parameter: end });
+            return Err(OverlayError::UnknownParameter { parameter: end.into() });
         };
         node.entry.id.clone_from(&inner);
         node.entry.kind = crate::model_file::NodeEntryKind::Junction;
@@ -193,7 +194,7 @@ impl Model {
         node.entry.temperature_k = None;
         self.nodes.push(node);
         self.edges.push(EdgeSpec {
-            id: id.to_owned(),
+            id: id.into(),
             from: inner,
             to: end,
             params: params.clone(),

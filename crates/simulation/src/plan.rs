@@ -16,13 +16,14 @@ use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::Equipment;
+use smol_str::SmolStr;
 use std::ops::Range;
 use std::sync::OnceLock;
 
 /// A unit with its places in the flat state.
 #[derive(Debug, Clone)]
 pub(crate) struct PlannedUnit {
-    pub name: String,
+    pub name: SmolStr,
     pub equipment: Equipment,
     /// Port of the network.
     pub port: usize,
@@ -154,7 +155,7 @@ pub(crate) struct SeasonalGround {
 /// What only maps say of a node.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeOnMap {
-    pub site: String,
+    pub site: SmolStr,
     pub x_m: Option<f64>,
     pub y_m: Option<f64>,
 }
@@ -164,15 +165,15 @@ pub(crate) struct NodeOnMap {
 pub(crate) struct EdgeOnMap {
     pub kind: &'static str,
     pub length_m: f64,
-    pub station: String,
+    pub station: SmolStr,
 }
 
 /// Everything that does not change during a run.
 #[derive(Debug)]
 pub struct Plan {
     pub(crate) network: Network,
-    pub(crate) node_names: Vec<String>,
-    pub(crate) edge_names: Vec<String>,
+    pub(crate) node_names: Vec<SmolStr>,
+    pub(crate) edge_names: Vec<SmolStr>,
     pub(crate) station_names: Vec<String>,
     pub(crate) stations: Vec<Station>,
     /// Station of each edge that is an extraction valve beside a feed-in pump.
@@ -283,20 +284,20 @@ impl Plan {
     /// Geometry for maps.
     pub(crate) fn map(&self) -> NetworkMap {
         let nodes = self.node_names.iter().zip(&self.nodes_on_map).map(|(id, node)| MapNode {
-            id: id.clone(),
-            site: node.site.clone(),
+            id: id.to_string(),
+            site: node.site.to_string(),
             x_m: node.x_m,
             y_m: node.y_m,
         });
         let edges = self.edges_on_map.iter().enumerate().map(|(i, edge)| {
             let ends = &self.network.edges[i];
             MapEdge {
-                id: self.edge_names[i].clone(),
+                id: self.edge_names[i].to_string(),
                 kind: edge.kind.to_owned(),
-                from: self.node_names[ends.from.index()].clone(),
-                to: self.node_names[ends.to.index()].clone(),
+                from: self.node_names[ends.from.index()].to_string(),
+                to: self.node_names[ends.to.index()].to_string(),
                 length_m: edge.length_m,
-                station: edge.station.clone(),
+                station: edge.station.to_string(),
             }
         });
         NetworkMap { nodes: nodes.collect(), edges: edges.collect() }
@@ -313,12 +314,12 @@ impl Plan {
     }
 
     /// Names of the nodes, in the order of their ids.
-    pub fn node_names(&self) -> &[String] {
+    pub fn node_names(&self) -> &[SmolStr] {
         &self.node_names
     }
 
     /// Names of the edges, in the order of their ids.
-    pub fn edge_names(&self) -> &[String] {
+    pub fn edge_names(&self) -> &[SmolStr] {
         &self.edge_names
     }
 }

@@ -14,6 +14,7 @@ use anergy_network::hydraulics::HydraulicReport;
 use anergy_network::state::Hold;
 use control::settle_controllers;
 use serde::Serialize;
+use smol_str::SmolStr;
 
 /// Temperatures have settled when none changes by more, K.
 const SETTLED_K: f64 = 1e-9;
@@ -27,7 +28,7 @@ const MAX_ROUNDS: u32 = 2_000;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SteadyNode {
     /// Name.
-    pub id: String,
+    pub id: SmolStr,
     /// Pressure above the atmosphere, Pa.
     pub p_pa: f64,
     /// Temperature, K.
@@ -40,9 +41,9 @@ pub struct SteadyNode {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SteadyEdge {
     /// Name.
-    pub id: String,
+    pub id: SmolStr,
     /// Registry word.
-    pub kind: String,
+    pub kind: SmolStr,
     /// Mass flow from a to b, kg/s.
     pub m_flow_kg_s: f64,
     /// `p_a - p_b`, Pa.
@@ -118,7 +119,7 @@ fn check_vessels(simulation: &Simulation) -> Result<(), RunError> {
         if m_flow_kg_s.abs() > VESSEL_KG_S {
             return Err(RunError::Unbalanced {
                 time: "steady state".into(),
-                node: plan.node_names[vessel.node.index()].clone(),
+                node: plan.node_names[vessel.node.index()].to_string(),
                 m_flow_kg_s,
             });
         }
@@ -190,7 +191,7 @@ pub fn table(simulation: &Simulation, report: HydraulicReport) -> Steady {
             .enumerate()
             .map(|(i, (id, edge))| SteadyEdge {
                 id: id.clone(),
-                kind: edge.kind.to_owned(),
+                kind: SmolStr::new_static(edge.kind),
                 m_flow_kg_s: network.m_flow_kg_s[i],
                 dp_pa: network.dp_pa(&plan.network, i),
             })

@@ -46,7 +46,7 @@ pub fn check(
             .iter()
             .map(|spec| {
                 let unit = if spec.unit.is_empty() { "1" } else { spec.unit };
-                vec![spec.name.clone(), unit.into(), spec.initial.to_string()]
+                vec![spec.name.to_string(), unit.into(), spec.initial.to_string()]
             })
             .collect();
         print_table(&["signal", "unit", "initial"], &rows);

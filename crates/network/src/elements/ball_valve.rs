@@ -79,7 +79,6 @@ impl Default for BallValveParams {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallValve {
     valve: Valve,
-    actuator: Actuator,
 }
 
 impl BallValveParams {
@@ -108,9 +107,7 @@ impl BallValveParams {
             delta_m: self.delta_m,
             ..ValveParams::default()
         };
-        let valve = valve.build(medium)?;
-        let actuator = Actuator { command: "open", ..valve.own_actuator() };
-        Ok(BallValve { valve, actuator })
+        Ok(BallValve { valve: valve.build(medium)? })
     }
 }
 
@@ -128,7 +125,7 @@ impl TwoPort for BallValve {
     }
 
     fn actuator(&self) -> Option<Actuator> {
-        Some(self.actuator)
+        Some(Actuator { command: "open", ..self.valve.own_actuator() })
     }
 
     fn target_position(&self, command: f64) -> f64 {

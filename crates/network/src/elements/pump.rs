@@ -176,13 +176,13 @@ impl Default for PumpParams {
 /// A pump ready to be solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pump {
-    curve: HeadCurve,
+    curve: Box<HeadCurve>,
     mode: PumpMode,
     proportional: Option<Proportional>,
     efficiency: Efficiency,
     heat_to_water: Option<f64>,
     standby_w: f64,
-    actuator: Actuator,
+    actuator: Box<Actuator>,
     speed_min: f64,
     speed_max: f64,
 }
@@ -207,7 +207,7 @@ impl PumpParams {
         };
         Ok(Pump {
             proportional,
-            curve,
+            curve: Box::new(curve),
             mode: self.mode,
             efficiency: self.overall_efficiency()?,
             heat_to_water: self
@@ -215,7 +215,7 @@ impl PumpParams {
                 .map(|share| ratio("heat_to_water", share))
                 .transpose()?,
             standby_w: not_negative("standby_w", self.standby_w)?,
-            actuator,
+            actuator: Box::new(actuator),
             speed_min: self.speed_min,
             speed_max,
         })
@@ -366,7 +366,7 @@ impl TwoPort for Pump {
     }
 
     fn actuator(&self) -> Option<Actuator> {
-        Some(self.actuator)
+        Some(*self.actuator)
     }
 
     fn target_position(&self, command: f64) -> f64 {

@@ -174,7 +174,7 @@ pub struct Valve {
     command: ValveCommand,
     inverse: bool,
     switch_at: Option<f64>,
-    actuator: Actuator,
+    actuator: Box<Actuator>,
     m_flow_nominal_kg_s: f64,
     m_turbulent_kg_s: f64,
 }
@@ -214,7 +214,7 @@ impl ValveParams {
             command: self.command,
             inverse: self.inverse,
             switch_at: self.switch_at,
-            actuator: Actuator {
+            actuator: Box::new(Actuator {
                 position: "opening",
                 command: command_name,
                 unit: "",
@@ -223,7 +223,7 @@ impl ValveParams {
                 rise_time_s: not_negative("stroke_time_s", self.stroke_time_s)?,
                 min: 0.0,
                 max: 1.0,
-            },
+            }),
             m_flow_nominal_kg_s,
             m_turbulent_kg_s: positive("delta_m", self.delta_m)? * m_flow_nominal_kg_s,
         };
@@ -291,7 +291,7 @@ impl ValveParams {
 impl Valve {
     /// The actuator, for elements that are a valve with other words.
     pub(super) fn own_actuator(&self) -> Actuator {
-        self.actuator
+        *self.actuator
     }
 }
 
@@ -319,7 +319,7 @@ impl TwoPort for Valve {
     }
 
     fn actuator(&self) -> Option<Actuator> {
-        Some(self.actuator)
+        Some(*self.actuator)
     }
 
     fn target_position(&self, command: f64) -> f64 {

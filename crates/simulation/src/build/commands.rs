@@ -31,7 +31,7 @@ impl Builder<'_> {
                     return id;
                 }
                 let signal = SignalSpec {
-                    name: name.clone(),
+                    name: name.as_str().into(),
                     unit: actuator.unit,
                     initial: actuator.initial_command,
                     min: actuator.min,

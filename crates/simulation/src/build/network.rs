@@ -283,7 +283,7 @@ impl Builder<'_> {
     }
 
     pub(super) fn check_graph(&mut self, network: &Network) {
-        let name = |id: &NodeId| self.model.nodes[id.index()].entry.id.clone();
+        let name = |id: &NodeId| self.model.nodes[id.index()].entry.id.to_string();
         let mut joined = vec![false; network.nodes.len()];
         for edge in &network.edges {
             joined[edge.from.index()] = true;

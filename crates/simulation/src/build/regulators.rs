@@ -6,6 +6,7 @@ use anergy_core::ids::{EdgeId, NodeId, SignalId};
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
 use anergy_network::graph::{Edge, Regulator};
+use smol_str::format_smolstr;
 use std::collections::HashMap;
 
 impl Builder<'_> {
@@ -67,7 +68,7 @@ impl Builder<'_> {
             .map(|regulator| {
                 let spec = &self.model.edges[regulator.edge.index()];
                 let signal = SignalSpec {
-                    name: format!("{}.{}", spec.id, regulator.regulation.name),
+                    name: format_smolstr!("{}.{}", spec.id, regulator.regulation.name),
                     unit: "pa",
                     initial: regulator.regulation.set_pa,
                     min: 0.0,

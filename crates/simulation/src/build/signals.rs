@@ -89,7 +89,13 @@ impl Builder<'_> {
                     temperature_signal(&name, input.initial, &self.liquid())
                 } else {
                     let (unit, max) = (input.unit, f64::INFINITY);
-                    SignalSpec { name, unit, initial: input.initial, min: input.min, max }
+                    SignalSpec {
+                        name: name.into(),
+                        unit,
+                        initial: input.initial,
+                        min: input.min,
+                        max,
+                    }
                 };
                 self.add_signal(signals, signal, &spec.place);
             }
@@ -265,10 +271,10 @@ pub(super) fn ratio_hint(signal: &SignalSpec, value: f64) -> Option<String> {
 }
 
 pub(super) fn free_signal(name: &str, unit: &'static str, initial: f64) -> SignalSpec {
-    SignalSpec { name: name.to_owned(), unit, initial, min: f64::NEG_INFINITY, max: f64::INFINITY }
+    SignalSpec { name: name.into(), unit, initial, min: f64::NEG_INFINITY, max: f64::INFINITY }
 }
 
 pub(super) fn temperature_signal(name: &str, initial: f64, range: &Temperatures) -> SignalSpec {
     let (min, max) = range.range_k();
-    SignalSpec { name: name.to_owned(), unit: "k", initial, min, max }
+    SignalSpec { name: name.into(), unit: "k", initial, min, max }
 }

@@ -2,13 +2,14 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 
 /// `[[node]]`: a plain node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodeEntry {
     /// Name.
-    pub id: String,
+    pub id: SmolStr,
     /// What is known at it.
     #[serde(default)]
     pub kind: NodeEntryKind,

@@ -2,6 +2,7 @@
 
 mod components;
 mod composites;
+mod drivers;
 mod effects;
 mod fluids;
 mod ground;
@@ -10,6 +11,7 @@ mod plants;
 mod station_types;
 mod three_way_valves;
 
+use self::pipe_types::PipeTypes;
 use super::expand::{self, Plain};
 use super::tables::Rows;
 use super::*;
@@ -71,6 +73,10 @@ pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> 
         wrong_sites: HashSet::new(),
         sites_unread: false,
         medium: Medium::default(),
+        types: PipeTypes::new(),
+        nodes: Vec::new(),
+        edges: Vec::new(),
+        later: Later::default(),
     };
     let model = reader.model(text);
     let problems = reader.tables.located(reader.reader.problems);
@@ -97,6 +103,19 @@ struct ModelReader<'a> {
     sites_unread: bool,
     /// The water, as far as it is right.
     medium: Medium,
+    types: PipeTypes,
+    nodes: Vec<NodeSpec>,
+    edges: Vec<EdgeSpec>,
+    later: Later,
+}
+
+/// Problems of what is read as soon as it is known, so that a large model need not be held as plain
+/// entries, but is told after the problems of the composites.
+#[derive(Default)]
+struct Later {
+    types: Vec<Diagnostic>,
+    nodes: Vec<Diagnostic>,
+    edges: Vec<Diagnostic>,
 }
 
 /// The stations of a model file.
@@ -134,21 +153,31 @@ impl ModelReader<'_> {
         if let Some((ground, place)) = &ground {
             self.check_ground(ground, place, run.as_ref().map(|(run, _)| run));
         }
-        let (mut nodes, mut edges) = (Vec::new(), Vec::new());
         let mut interfaces = Vec::new();
         self.network(text);
         self.station_types();
-        self.read_sites(&mut nodes);
-        self.trenches(&mut edges);
-        let mut stations = self.stations(&mut nodes, &mut edges, &mut interfaces);
+        let so_far = std::mem::take(&mut self.reader.problems);
+        self.types = self.pipe_types();
+        self.later.types = std::mem::replace(&mut self.reader.problems, so_far);
+        self.read_sites();
+        self.trenches();
+        let mut stations = self.stations(&mut interfaces);
+        self.sites = HashMap::new();
         self.hold_worst_consumers(&stations);
-        self.three_way_valves(&mut edges);
-        let plain = |tree: &Tree| Plain { tree: tree.clone(), owner: "".into(), entry: "".into() };
-        nodes.extend(self.items("node").iter().map(plain));
-        edges.extend(self.items("edge").iter().map(plain));
-        let types = self.pipe_types();
-        let nodes = nodes.iter().filter_map(|node| self.node(node)).collect();
-        let edges = edges.into_iter().filter_map(|edge| self.edge(edge, &types)).collect();
+        self.three_way_valves();
+        let plain = |tree: Tree| Plain { tree, owner: "".into(), entry: "".into() };
+        for tree in self.items("node") {
+            self.add_nodes([plain(tree)]);
+        }
+        for tree in self.items("edge") {
+            self.add_edges([plain(tree)]);
+        }
+        let Later { types, nodes, edges } = std::mem::take(&mut self.later);
+        self.reader.problems.extend(types.into_iter().chain(nodes).chain(edges));
+        let (mut nodes, mut edges) =
+            (std::mem::take(&mut self.nodes), std::mem::take(&mut self.edges));
+        nodes.shrink_to_fit();
+        edges.shrink_to_fit();
         for tree in self.items("interface") {
             let what = format!("interface \"{}\"", tree.text("id").unwrap_or("?"));
             if let Some((entry, table)) = self.reader.read::<InterfaceEntry>(&what, &tree) {
@@ -185,6 +214,26 @@ impl ModelReader<'_> {
             edges,
         };
         Some(model)
+    }
+
+    /// Types plain nodes.
+    fn add_nodes(&mut self, plain: impl IntoIterator<Item = Plain>) {
+        std::mem::swap(&mut self.reader.problems, &mut self.later.nodes);
+        for plain in plain {
+            let node = self.node(&plain);
+            self.nodes.extend(node);
+        }
+        std::mem::swap(&mut self.reader.problems, &mut self.later.nodes);
+    }
+
+    /// Types plain edges.
+    fn add_edges(&mut self, plain: impl IntoIterator<Item = Plain>) {
+        std::mem::swap(&mut self.reader.problems, &mut self.later.edges);
+        for plain in plain {
+            let edge = self.edge(plain);
+            self.edges.extend(edge);
+        }
+        std::mem::swap(&mut self.reader.problems, &mut self.later.edges);
     }
 
     fn check_sections(&mut self) {
@@ -265,63 +314,6 @@ impl ModelReader<'_> {
 
     fn check_temperature(&mut self, range: &Temperatures, field: &str, t_k: f64, place: &Place) {
         self.reader.problems.extend(range.problem("", field, t_k, place));
-    }
-
-    fn drivers(&mut self, start: Option<Timestamp>) -> Vec<DriverSpec> {
-        let mut drivers = Vec::new();
-        for tree in self.items("schedule") {
-            let what = format!("schedule of \"{}\"", tree.text("signal").unwrap_or("?"));
-            let read = self.reader.read::<ScheduleEntry>(&what, &tree);
-            let Some((entry, table)) = read else { continue };
-            let (times_s, values): (Vec<f64>, Vec<f64>) = entry.points.iter().copied().unzip();
-            let span = tree.get("points").and_then(|tree| tree.span.range());
-            if times_s.is_empty() {
-                self.reader.report(Diagnostic::new(format!("{what} has no points"), span));
-                continue;
-            }
-            if let Some(i) = (1..times_s.len()).find(|&i| times_s[i] <= times_s[i - 1]) {
-                self.reader.report(
-                    Diagnostic::new(
-                        format!("{what}: time {} s is not after {} s", times_s[i], times_s[i - 1]),
-                        span,
-                    )
-                    .with_hint("the times of a schedule must rise"),
-                );
-                continue;
-            }
-            drivers.push(DriverSpec {
-                signal: entry.signal,
-                unit: entry.unit,
-                interpolation: entry.interpolation,
-                times_s: times_s.into(),
-                values: values.into(),
-                place: place(&what, &tree, &table),
-                source: what,
-            });
-        }
-        let mut entries = Vec::new();
-        for tree in self.items("series") {
-            let what = format!("series of \"{}\"", tree.text("signal").unwrap_or("?"));
-            if let Some((entry, table)) = self.reader.read::<SeriesEntry>(&what, &tree) {
-                entries.push((what, entry, table, tree));
-            }
-        }
-        let mut files = series::Files::new(self.dir, start, entries.iter().map(|entry| &entry.1));
-        for (what, entry, table, tree) in &entries {
-            match files.load(entry, tree) {
-                Err(problem) => self.reader.report(problem),
-                Ok((times_s, values)) => drivers.push(DriverSpec {
-                    signal: entry.signal.clone(),
-                    unit: entry.unit.clone(),
-                    interpolation: entry.interpolation,
-                    times_s,
-                    values,
-                    source: format!("{what} ({}, column {})", entry.file, entry.column),
-                    place: place(what, tree, table),
-                }),
-            }
-        }
-        drivers
     }
 
     fn sensors(&mut self) -> Vec<SensorSpec> {

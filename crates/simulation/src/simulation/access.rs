@@ -26,7 +26,7 @@ impl Simulation {
         let spec = self.plan.signals.spec(id);
         if !(spec.min..=spec.max).contains(&value) {
             return Err(RunError::OutOfRange {
-                signal: spec.name.clone(),
+                signal: spec.name.to_string(),
                 value,
                 min: spec.min,
                 max: spec.max,

@@ -64,7 +64,7 @@ impl PressureWatch {
                 Limit::High => "pressure_high",
                 Limit::VesselEmpty => "vessel_empty",
             },
-            node: plan.node_names[node].clone(),
+            node: plan.node_names[node].to_string(),
             p_pa: state.network.p_pa[node],
             limit_pa: self.limit_pa,
         }

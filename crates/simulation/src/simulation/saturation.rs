@@ -90,7 +90,7 @@ fn unreached(plan: &Plan, state: &State, target: Target) -> Unreached {
             let id = &plan.edge_names[edge];
             let word = plan.network.edges[edge].element.actuator().map_or("", |a| a.position);
             Unreached {
-                id: id.clone(),
+                id: id.to_string(),
                 quantity: format!("{id}.{word}"),
                 wanted,
                 reached,
@@ -105,7 +105,7 @@ fn unreached(plan: &Plan, state: &State, target: Target) -> Unreached {
                 quantity: controller.measured_names[0].clone(),
                 wanted: state.signals[controller.set_points.start],
                 reached: channels::value(plan, state, controller.measures[0]),
-                free: plan.signals.spec(controller.acts_on[0]).name.clone(),
+                free: plan.signals.spec(controller.acts_on[0]).name.to_string(),
                 position: state.signals[controller.acts_on[0].index()],
             }
         }

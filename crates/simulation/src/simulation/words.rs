@@ -113,8 +113,8 @@ pub(super) fn blocked_event(
 
 pub(crate) fn named(plan: &Plan, time: Time, error: &HydraulicError) -> RunError {
     let time = time.to_string();
-    let node_name = |id: anergy_core::ids::NodeId| plan.node_names[id.index()].clone();
-    let edge_name = |id: anergy_core::ids::EdgeId| plan.edge_names[id.index()].clone();
+    let node_name = |id: anergy_core::ids::NodeId| plan.node_names[id.index()].to_string();
+    let edge_name = |id: anergy_core::ids::EdgeId| plan.edge_names[id.index()].to_string();
     match *error {
         HydraulicError::NotConverged {
             iterations,

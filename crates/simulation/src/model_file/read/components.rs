@@ -1,6 +1,6 @@
 //! Nodes, edges, units and controllers: dispatched on their `kind`.
 
-use super::pipe_types::{self, PipeTypes};
+use super::pipe_types;
 use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Key, Scalar, Tree, TreeKind};
@@ -35,7 +35,9 @@ impl Words {
 impl ModelReader<'_> {
     pub(super) fn node(&mut self, plain: &Plain) -> Option<NodeSpec> {
         let what = format!("node \"{}\"", plain.tree.text("id").unwrap_or("?"));
-        let (entry, table) = self.reader.read::<NodeEntry>(&what, &plain.tree)?;
+        let (entry, mut table) = self.reader.read::<NodeEntry>(&what, &plain.tree)?;
+        // What a composite says stands where it does, so nothing need be kept of it.
+        table.fields.retain(|field| field.span != plain.tree.span);
         let place = place(plain.entry_or(&what), &plain.tree, &table);
         if entry.id.is_empty() {
             self.reader.report(Diagnostic::new("node: id is empty", place.of("id")));
@@ -84,10 +86,10 @@ impl ModelReader<'_> {
             let message = format!("volume_m3 = {} must not be negative", entry.volume_m3);
             self.reader.report(refused(&what, &place, Some("volume_m3"), &message));
         }
-        Some(NodeSpec { entry, site: plain.owner.to_string(), place })
+        Some(NodeSpec { entry, site: plain.owner.clone(), place })
     }
 
-    pub(super) fn edge(&mut self, plain: Plain, types: &PipeTypes) -> Option<EdgeSpec> {
+    pub(super) fn edge(&mut self, plain: Plain) -> Option<EdgeSpec> {
         let mut words = Words::new(plain.entry_or("edge").to_owned(), plain.tree);
         let id = self.required_text(&mut words, "id")?;
         let composite = !plain.entry.is_empty();
@@ -98,7 +100,7 @@ impl ModelReader<'_> {
         let to = self.required_text(&mut words, "to");
         let kind = self.kind::<ElementParams>(&mut words)?;
         if kind == "pipe" {
-            self.merge_pipe_type(&mut words, types)?;
+            self.merge_pipe_type(&mut words)?;
         }
         if composite {
             // The program has written these words, so the user need not know them.
@@ -114,17 +116,17 @@ impl ModelReader<'_> {
         let (params, place) = self.parameters(words, &kind)?;
         let (from, to) = (from?, to?);
         Some(EdgeSpec {
-            id,
-            from,
-            to,
+            id: id.into(),
+            from: from.into(),
+            to: to.into(),
             params,
             loss_factor: 1.0,
-            station: plain.owner.into(),
+            station: plain.owner,
             place,
         })
     }
 
-    fn merge_pipe_type(&mut self, words: &mut Words, types: &PipeTypes) -> Option<()> {
+    fn merge_pipe_type(&mut self, words: &mut Words) -> Option<()> {
         words.asked.push("pipe");
         let Some((_, name)) = words.tree.take("pipe") else { return Some(()) };
         let what = &words.what;
@@ -141,10 +143,10 @@ impl ModelReader<'_> {
             );
             return None;
         };
-        let own = types.get(type_name.as_str()).cloned();
+        let own = self.types.get(type_name.as_str()).cloned();
         let bought = || pipe_types::bought(type_name, name.span).map(Some);
         let Some(defaults) = own.or_else(bought) else {
-            let hint = pipe_types::hint(type_name, types);
+            let hint = pipe_types::hint(type_name, &self.types);
             self.reader.report(
                 Diagnostic::new(
                     format!("{what}: there is no pipe_type \"{type_name}\""),
@@ -211,7 +213,7 @@ impl ModelReader<'_> {
         let kind = self.kind::<EquipmentParams>(&mut words)?;
         words.what = format!("unit \"{id}\" ({kind})");
         let (params, place) = self.parameters(words, &kind)?;
-        Some(UnitSpec { id, port, params, place })
+        Some(UnitSpec { id: id.into(), port: port.into(), params, place })
     }
 
     pub(super) fn controllers(&mut self) -> Vec<ControllerSpec> {

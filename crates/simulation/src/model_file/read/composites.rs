@@ -5,7 +5,7 @@ use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Tree, TreeKind};
 use crate::model::InterfaceSpec;
-use crate::model_file::expand::{self, Plain};
+use crate::model_file::expand;
 use crate::model_file::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
 use std::collections::HashSet;
 
@@ -28,7 +28,7 @@ impl Stations {
 }
 
 impl ModelReader<'_> {
-    pub(super) fn read_sites(&mut self, nodes: &mut Vec<Plain>) {
+    pub(super) fn read_sites(&mut self) {
         for tree in self.items("site") {
             let what = format!("site \"{}\"", tree.text("id").unwrap_or("?"));
             let site = self.reader.read::<SiteEntry>(&what, &tree);
@@ -73,7 +73,7 @@ impl ModelReader<'_> {
                 wrong(format!("{what} exists twice"), "id", "give one of them another id");
                 continue;
             }
-            nodes.extend(expand::site_nodes(&site, tree.span));
+            self.add_nodes(expand::site_nodes(&site, tree.span));
             self.sites.insert(site.id.clone(), site);
         }
     }
@@ -92,7 +92,7 @@ impl ModelReader<'_> {
         found
     }
 
-    pub(super) fn trenches(&mut self, edges: &mut Vec<Plain>) {
+    pub(super) fn trenches(&mut self) {
         let mut known = HashSet::new();
         for tree in self.items("trench") {
             let mut words = Words::new("trench", tree.clone());
@@ -152,23 +152,17 @@ impl ModelReader<'_> {
                 );
                 wrong(message, "", &hint);
             }
-            edges.extend(pipes);
+            self.add_edges(pipes);
         }
     }
 
-    pub(super) fn stations(
-        &mut self,
-        nodes: &mut Vec<Plain>,
-        edges: &mut Vec<Plain>,
-        interfaces: &mut Vec<InterfaceSpec>,
-    ) -> Stations {
+    pub(super) fn stations(&mut self, interfaces: &mut Vec<InterfaceSpec>) -> Stations {
         let mut stations = Stations::default();
         for tree in self.items("station") {
             let (site, name) = (tree.text("site"), tree.text("name").unwrap_or("station"));
             let id = format!("{}.{name}", site.unwrap_or("?"));
             let whole = self.typed_station(tree);
-            let read =
-                whole.and_then(|tree| self.station(&tree, &mut stations, nodes, edges, interfaces));
+            let read = whole.and_then(|tree| self.station(&tree, &mut stations, interfaces));
             if read.is_none() {
                 stations.wrong.insert(id);
             }
@@ -181,19 +175,17 @@ impl ModelReader<'_> {
         &mut self,
         tree: &Tree,
         stations: &mut Stations,
-        nodes: &mut Vec<Plain>,
-        edges: &mut Vec<Plain>,
         interfaces: &mut Vec<InterfaceSpec>,
     ) -> Option<()> {
         let what = expand::station_in_words(tree);
         if tree.text("kind") == Some("plant") {
-            return self.plant(tree, &what, stations, (nodes, edges), interfaces);
+            return self.plant(tree, &what, stations, interfaces);
         }
         let (entry, table) = self.reader.read::<StationEntry>(&what, tree)?;
         let site = self.site_with_two_lines(&what, tree)?;
         self.check_parts(&what, entry.kind, tree)?;
         let place = place(&what, tree, &table);
-        let (more_nodes, more_edges, interface) = expand::station(&entry, &site, tree);
+        let (nodes, edges, interface) = expand::station(&entry, &site, tree);
         if stations.add(self, &interface, &what, tree).is_none() {
             return Some(());
         }
@@ -201,8 +193,8 @@ impl ModelReader<'_> {
             let line = |i: usize| format!("{}.{}", site.id, site.lines[i]);
             stations.consumers.push((interface.id.clone(), (line(0), line(1))));
         }
-        nodes.extend(more_nodes);
-        edges.extend(more_edges);
+        self.add_nodes(nodes);
+        self.add_edges(edges);
         interfaces.push(InterfaceSpec::new(interface, place));
         Some(())
     }

@@ -4,7 +4,6 @@ use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::Tree;
 use crate::model::{InterfaceSpec, Place, WorstPointSpec};
-use crate::model_file::expand::Plain;
 use crate::model_file::plant::{self, DpAt, PlantEntry};
 use crate::model_file::{StationKind, WorstPointEntry};
 use crate::wording::refused;
@@ -16,7 +15,6 @@ impl ModelReader<'_> {
         tree: &Tree,
         what: &str,
         stations: &mut Stations,
-        (nodes, edges): (&mut Vec<Plain>, &mut Vec<Plain>),
         interfaces: &mut Vec<InterfaceSpec>,
     ) -> Option<()> {
         let (entry, table) = self.reader.read::<PlantEntry>(what, tree)?;
@@ -26,8 +24,8 @@ impl ModelReader<'_> {
         self.check_plant(&entry, what, tree, &place)?;
         let plant = plant::plant(&entry, &site, tree, what);
         stations.add(self, &plant.interface, what, tree)?;
-        nodes.extend(plant.nodes);
-        edges.extend(plant.edges);
+        self.add_nodes(plant.nodes);
+        self.add_edges(plant.edges);
         interfaces.push(InterfaceSpec::new(plant.interface, place.clone()));
         self.rows.entry("unit").or_default().push(plant.unit);
         self.rows.entry("pressure_reference").or_default().extend(plant.reference);

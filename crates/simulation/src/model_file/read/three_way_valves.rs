@@ -3,12 +3,11 @@
 use super::{ModelReader, place};
 use crate::document::{Tree, TreeKind};
 use crate::model_file::ThreeWayValveEntry;
-use crate::model_file::expand::Plain;
 use crate::model_file::three_way_valve::{OWN_FIELDS, valves};
 use crate::wording::refused;
 
 impl ModelReader<'_> {
-    pub(super) fn three_way_valves(&mut self, edges: &mut Vec<Plain>) {
+    pub(super) fn three_way_valves(&mut self) {
         for tree in self.items("three_way_valve") {
             let what = format!("three_way_valve \"{}\"", tree.text("id").unwrap_or("?"));
             // What is no table is reported as an entry of its own.
@@ -30,7 +29,7 @@ impl ModelReader<'_> {
             }
             self.only_fields_of_a_valve(&what, &rest);
             if self.reader.problems.len() == before {
-                edges.extend(valves(&entry, &own, &rest));
+                self.add_edges(valves(&entry, &own, &rest));
             }
         }
     }
