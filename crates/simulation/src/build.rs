@@ -28,6 +28,7 @@ use anergy_network::elements::ElementParams;
 use anergy_network::graph::Network;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::{Station, StationState};
+use anergy_network::state::NetworkState;
 use network::pipes;
 use signals::Writer;
 use std::collections::HashMap;
@@ -181,7 +182,8 @@ impl Builder<'_> {
         let vessels = self.vessels(&network, &node_ids);
         let pressure_watches = self.pressure_watches(&network, &node_ids);
         let meters = self.meters(&node_ids);
-        let mut initial = self.initial_state(&network, &units, &stations, &signals);
+        drop((node_ids, edge_ids));
+        let mut initial = self.initial_state(&units, &stations, &signals);
         initial.meters = vec![Reading::default(); meters.len()];
         let (pulses, pulse_of) = self.pulses(&commands);
         initial.pulse_shares = vec![0.0; pulses.len()];
@@ -215,6 +217,7 @@ impl Builder<'_> {
             seasonal_ground,
             surroundings,
             initial,
+            initial_water: self.initial_water(),
             channels: Vec::new(),
             sources: Vec::new(),
             known_channels: OnceLock::new(),
@@ -294,7 +297,6 @@ impl Builder<'_> {
 
     fn initial_state(
         &self,
-        network: &Network,
         units: &[PlannedUnit],
         stations: &[Station],
         signals: &SignalTable,
@@ -302,7 +304,7 @@ impl Builder<'_> {
         let initial_k = self.model.run.initial_k;
         State {
             time: Time::ZERO,
-            network: self.initial_water(network),
+            network: NetworkState::new(&without_parts(self.model), initial_k),
             signals: signals.initial_values(),
             taken_over: vec![false; signals.specs().len()],
             unit_states: units
@@ -338,6 +340,21 @@ impl Builder<'_> {
             solves: 0,
             iterations: 0,
         }
+    }
+}
+
+/// A network of which nothing changes.
+fn without_parts(model: &Model) -> Network {
+    Network {
+        medium: model.medium,
+        gravity_m_s2: model.gravity_m_s2,
+        nodes: Vec::new(),
+        edges: Vec::new(),
+        ports: Vec::new(),
+        prescriptions: Vec::new(),
+        couplings: Vec::new(),
+        soil: Vec::new(),
+        regulators: Vec::new(),
     }
 }
 

@@ -179,7 +179,7 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     ] {
         list.add(ChannelGroup::Balances, "network", quantity, unit, source);
     }
-    if !plan.initial.network.friction_k.is_empty() {
+    if plan.initial_water.counts_friction {
         let joule = Source::Cumulative(Cumulative::Friction);
         list.add(ChannelGroup::Balances, "network", "friction_w", "W", Source::TotalFriction);
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);

@@ -152,6 +152,40 @@ pub(crate) struct SeasonalGround {
     pub at_depths: Vec<(SignalId, f64)>,
 }
 
+/// The water at the start of a run: made anew for each start, because it is as large as the state.
+#[derive(Debug, Clone)]
+pub(crate) struct InitialWater {
+    pub t_k: f64,
+    /// Pipes that begin with another temperature, K.
+    pub pipes: Vec<(usize, f64)>,
+    /// From where a cold solve starts.
+    pub level_pa: f64,
+    pub follows_densities: bool,
+    pub counts_friction: bool,
+    pub follows_temperatures: bool,
+}
+
+impl InitialWater {
+    /// All water at rest at its initial temperatures.
+    fn state(&self, network: &Network) -> NetworkState {
+        let mut state = NetworkState::new(network, self.t_k);
+        for (pipe, t_k) in &self.pipes {
+            state.fill_pipe(*pipe, *t_k);
+        }
+        state.p_pa.fill(self.level_pa);
+        if self.follows_densities {
+            state.follow_densities(network);
+        }
+        if self.counts_friction {
+            state.count_friction();
+        }
+        if self.follows_temperatures {
+            state.follow_temperatures(network);
+        }
+        state
+    }
+}
+
 /// What only maps say of a node.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeOnMap {
@@ -204,7 +238,9 @@ pub struct Plan {
     pub(crate) seasonal_ground: Option<SeasonalGround>,
     /// Signal with the temperature around each edge.
     pub(crate) surroundings: Vec<(SignalId, f64)>,
+    /// The state at the start, but for the water.
     pub(crate) initial: State,
+    pub(crate) initial_water: InitialWater,
     /// The channels while the plan is built, if something measures one; empty afterwards.
     pub(crate) channels: Vec<Channel>,
     pub(crate) sources: Vec<Source>,
@@ -225,6 +261,11 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The state at the start of a run.
+    pub(crate) fn initial_state(&self) -> State {
+        State { network: self.initial_water.state(&self.network), ..self.initial.clone() }
+    }
+
     pub(crate) fn electric_w(&self, state: &NetworkState, edge: usize) -> f64 {
         let edge_state = state.edge_state(&self.network, edge);
         self.network.edges[edge]

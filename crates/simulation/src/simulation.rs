@@ -62,18 +62,19 @@ impl Simulation {
         let solver = HydraulicSolver::new(&plan.network)
             .map_err(|error| named(&plan, Time::ZERO, &error))?;
         let transport = Transport::new(&plan.network).map_err(singular)?;
+        let state = plan.initial_state();
         let mut simulation = Self {
-            state: plan.initial.clone(),
             solver,
             transport,
             events: Vec::with_capacity(64),
-            wanted: plan.initial.network.requests.clone(),
+            wanted: state.network.requests.clone(),
+            state,
             holds: vec![Hold::Held; plan.prescriptions.len()],
             near: vec![0; plan.drivers.len()],
             desk: Desk::new(&plan),
             plan,
         };
-        simulation.reset()?;
+        simulation.begin()?;
         Ok(simulation)
     }
 
@@ -83,8 +84,13 @@ impl Simulation {
     /// # Errors
     /// As [`Self::new`].
     pub fn reset(&mut self) -> Result<(), RunError> {
-        self.state = self.plan.initial.clone();
+        self.state = self.plan.initial_state();
         self.events.clear();
+        self.begin()
+    }
+
+    /// From the initial state to the start of the run.
+    fn begin(&mut self) -> Result<(), RunError> {
         for driver in &self.plan.drivers {
             self.state.signals[driver.signal.index()] = driver.value_at(Time::ZERO);
         }

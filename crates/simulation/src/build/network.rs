@@ -4,6 +4,7 @@ use super::Builder;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::model::{EdgeSpec, Place};
 use crate::model_file::NodeEntryKind;
+use crate::plan::InitialWater;
 use crate::temperatures::{SURROUNDINGS, Temperatures};
 use crate::wording::refused;
 use anergy_core::ids::{EdgeId, NodeId};
@@ -11,7 +12,6 @@ use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::{Coupling, Edge, GraphProblem, Network, Node, NodeKind};
 use anergy_network::soil::SoilRings;
-use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::EquipmentParams;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -89,27 +89,23 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// All water at rest at its initial temperatures.
-    pub(super) fn initial_water(&self, network: &Network) -> NetworkState {
-        let mut state = NetworkState::new(network, self.model.run.initial_k);
-        for (i, spec) in self.model.edges.iter().enumerate() {
-            if let ElementParams::Pipe(PipeParams { initial_k: Some(t_k), .. }) = &spec.params {
-                state.fill_pipe(i, *t_k);
-            }
+    /// The water at the start.
+    pub(super) fn initial_water(&self) -> InitialWater {
+        let model = self.model;
+        let edges = model.edges.iter().enumerate();
+        let pipes = edges.filter_map(|(i, spec)| match &spec.params {
+            ElementParams::Pipe(pipe) => pipe.initial_k.map(|t_k| (i, t_k)),
+            _ => None,
+        });
+        InitialWater {
+            t_k: model.run.initial_k,
+            pipes: pipes.collect(),
+            // A cold solve starts from the pressure level of the model.
+            level_pa: model.references.first().map_or(0.0, |r| r.entry.pressure_pa),
+            follows_densities: model.thermosiphon,
+            counts_friction: model.dissipation,
+            follows_temperatures: model.follow_temperature,
         }
-        // A cold solve starts from the pressure level of the model.
-        let level = self.model.references.first().map_or(0.0, |r| r.entry.pressure_pa);
-        state.p_pa.fill(level);
-        if self.model.thermosiphon {
-            state.follow_densities(network);
-        }
-        if self.model.dissipation {
-            state.count_friction();
-        }
-        if self.model.follow_temperature {
-            state.follow_temperatures(network);
-        }
-        state
     }
 
     pub(super) fn references(&mut self, nodes: &mut [Node], node_ids: &HashMap<&str, usize>) {
