@@ -249,7 +249,6 @@ impl Builder<'_> {
         (plan.channels, plan.sources) = (Vec::new(), Vec::new());
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
-        channels::add_swings(&mut plan);
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
         Some(plan)
     }

@@ -185,22 +185,15 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
     }
     sensors(&mut list, plan);
+    for (i, watch) in plan.swing_watches.iter().enumerate() {
+        let name = &plan.edge_names[watch.edge];
+        list.add(ChannelGroup::Control, name, "swings", "1", Source::PumpSwing(i));
+    }
     (list.channels, list.sources)
 }
 
 /// Unit of a difference of temperatures, which counts from nothing.
 pub(crate) const DIFFERENCE_K: &str = "delta K";
-
-/// Adds whether the watched pumps swing.
-pub(crate) fn add_swings(plan: &mut Plan) {
-    let channels = std::mem::take(&mut plan.channels);
-    let mut list = List { channels, sources: std::mem::take(&mut plan.sources) };
-    for (i, watch) in plan.swing_watches.iter().enumerate() {
-        let name = &plan.edge_names[watch.edge];
-        list.add(ChannelGroup::Control, name, "swings", "1", Source::PumpSwing(i));
-    }
-    (plan.channels, plan.sources) = (list.channels, list.sources);
-}
 
 /// Adds the readings of the sensors.
 pub(crate) fn add_sensors(plan: &mut Plan) {

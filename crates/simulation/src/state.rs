@@ -96,6 +96,7 @@ impl State {
             + heap(&self.crossed)
             + heap(&self.missed)
             + heap(&self.sensors)
+            + heap(&self.swings)
             + heap(&self.controller_states)
             + heap(&self.next_tick)
             + heap(&self.last_tick)

@@ -167,5 +167,5 @@ fn swing_event(
         }
         _ => (Severity::Warning, "oscillating", format!("{component} oscillates: {how}")),
     };
-    Event { time, severity, component, kind: kind.into(), message }
+    Event { time, severity, component: component.into(), kind: kind.into(), message }
 }
