@@ -296,7 +296,7 @@ impl<'a> Analysis<'a> {
 }
 
 fn name(plan: &Plan, edge: EdgeId) -> String {
-    plan.edge_names[edge.index()].clone()
+    plan.edge_names[edge.index()].to_string()
 }
 
 fn opponent(plan: &Plan, influence: &Influence) -> Opponent {
