@@ -144,8 +144,21 @@ fn the_flag_is_set_while_blocked_and_cleared_after_the_relief() {
     assert!(after_1 / (after_1 + after_2) > 0.40);
     let fall = 1.0 - (after_1 + after_2) / (before_1 + before_2);
     assert!((0.0..0.15).contains(&fall), "{fall}");
-    let events: Vec<(f64, String)> =
-        simulation.take_events().map(|event| (event.time.as_s(), event.kind)).collect();
+    let spans = &anergy_simulation::balance::summary(&simulation, false)["blocked"];
+    assert_eq!(spans.as_array().unwrap().len(), 1, "{spans}");
+    assert_eq!(spans[0]["station"], "sf1.station");
+    assert_eq!(spans[0]["blocked_by"], "sf2.feed_in_pump");
+    assert!((60.0..80.0).contains(&spans[0]["from_s"].as_f64().unwrap()), "{spans}");
+    assert!((2230.0..2260.0).contains(&spans[0]["to_s"].as_f64().unwrap()), "{spans}");
+    let (events, messages): (Vec<(f64, String)>, Vec<String>) = simulation
+        .take_events()
+        .map(|event| ((event.time.as_s(), event.kind), event.message))
+        .unzip();
+    assert!(
+        messages[0].ends_with("wanted; most of all held back by sf2.feed_in_pump"),
+        "{messages:?}"
+    );
+    assert!(messages[1].ends_with("wanted"), "{messages:?}");
     // The pump needs some 7 s to its speed, then 60 s pass; the relief is within the ramp.
     assert_eq!(events.len(), 2, "{events:?}");
     assert!((60.0..80.0).contains(&events[0].0) && events[0].1 == "blocked", "{events:?}");

@@ -343,6 +343,13 @@ impl Blocking {
     }
 }
 
+/// The other pump or source that holds a pump back most at a solved state; `None` where none does, or where the
+/// network has no state without the pump.
+pub fn culprit(network: &Network, state: &NetworkState, pump: EdgeId) -> Option<EdgeId> {
+    let mut blocking = Blocking::new(network, state).ok()?;
+    blocking.margin(network, Feeder { pump, check_valve: pump }).ok()?.culprit
+}
+
 /// The pump of a feeder, and its head without flow at relative speed 1, Pa.
 fn pump_of(network: &Network, feeder: Feeder) -> (Option<&Pump>, f64) {
     let edge = &network.edges[feeder.pump.index()];

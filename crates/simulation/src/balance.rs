@@ -91,6 +91,20 @@ fn relative(difference: f64, terms: impl Iterator<Item = f64>, resolution: f64) 
     if scale > 0.0 { difference.abs() / scale } else { difference.abs() }
 }
 
+/// When stations were blocked, and by whom.
+fn blocked_spans(simulation: &Simulation) -> Vec<Value> {
+    let (plan, state) = (simulation.plan(), simulation.state());
+    let spans = state.blocked_spans.iter().map(|span| {
+        json!({
+            "station": plan.station_names[span.station],
+            "from_s": span.from.as_s(),
+            "to_s": span.to.map(anergy_core::clock::Time::as_s),
+            "blocked_by": span.by.map(|edge| &plan.edge_names[edge.index()]),
+        })
+    });
+    spans.collect()
+}
+
 /// Stations among the key results: of more, those with the most heat.
 const KEY_STATIONS: usize = 10;
 /// Where the line of friction stands among the balances: behind the pumps.
@@ -217,6 +231,7 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
             balance("dissipated", balances.dissipated_j / 3600.0, "Wh", balances.hydraulic_error()),
             balance("electricity", balances.electric_j / 3.6e6, "kWh", 0.0),
         ],
+        "blocked": blocked_spans(simulation),
         "pipes": pipes,
         "largest_pipe_error": pipe_error,
         "statistics": {

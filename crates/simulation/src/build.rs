@@ -312,6 +312,7 @@ impl Builder<'_> {
                 .collect(),
             unit_outputs: vec![0.0; units.last().map_or(0, |unit| unit.outputs.end)],
             stations: vec![StationState::default(); stations.len()],
+            blocked_spans: Vec::new(),
             station_heat_j: vec![0.0; stations.len()],
             meters: Vec::new(),
             pulse_shares: Vec::new(),

@@ -9,6 +9,7 @@ mod pipes;
 mod pressure;
 mod pulses;
 mod saturation;
+mod stations;
 mod validity;
 mod words;
 
@@ -31,10 +32,11 @@ pub(crate) use pipes::stored_j;
 pub use pressure::Crossing;
 pub(crate) use pressure::crossings;
 pub(crate) use saturation::{Missed, missed_now};
+pub(crate) use stations::BlockedSpan;
 use std::sync::Arc;
 pub use words::Unreached;
 pub(crate) use words::named;
-use words::{blocked_event, prescribed_event};
+use words::prescribed_event;
 
 /// A simulation that can be stepped.
 pub struct Simulation {
@@ -274,24 +276,6 @@ impl Simulation {
                 &mut self.state.unit_states[unit.state.clone()],
                 &mut self.state.unit_outputs[unit.outputs.clone()],
             );
-        }
-    }
-
-    /// Stations raise and clear their flag.
-    fn watch_stations(&mut self, end: Time, dt_s: f64) {
-        for (i, station) in self.plan.stations.iter().enumerate() {
-            let command = station
-                .pump
-                .and_then(|pump| self.plan.commands[pump.index()])
-                .map_or(0.0, |id| self.state.signals[id.index()]);
-            let memory = &mut self.state.stations[i];
-            let changed =
-                station.watch(&self.plan.network, &self.state.network, command, dt_s, memory);
-            if let Some(blocked) = changed {
-                let flow = station.m_flow_kg_s(&self.state.network);
-                let wanted = station.requested_m_flow_kg_s.unwrap_or(0.0);
-                self.events.push(blocked_event(&self.plan, i, end, blocked, flow, wanted));
-            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! The state of a simulation: plain data, so that a clone or its bytes are a snapshot.
 
 use crate::error::RunError;
-use crate::simulation::{Missed, SwingState};
+use crate::simulation::{BlockedSpan, Missed, SwingState};
 use anergy_control::sensor::SensorState;
 use anergy_core::clock::Time;
 use anergy_network::holding::VesselState;
@@ -42,6 +42,8 @@ pub struct State {
     pub(crate) unit_states: Vec<f64>,
     pub(crate) unit_outputs: Vec<f64>,
     pub(crate) stations: Vec<StationState>,
+    /// When their flags were up, in the order in which they went up.
+    pub(crate) blocked_spans: Vec<BlockedSpan>,
     pub(crate) station_heat_j: Vec<f64>,
     pub(crate) meters: Vec<Reading>,
     /// Share of the present period for which each pulsing valve is open.

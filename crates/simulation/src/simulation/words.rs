@@ -86,26 +86,36 @@ pub(super) fn reach_event(time: Time, held: bool, unreached: Unreached) -> Event
     }
 }
 
+/// What a station delivers when its flag changes.
+pub(super) struct Delivery {
+    pub flow_kg_s: f64,
+    pub wanted_kg_s: f64,
+    /// The pump or source that holds it back most.
+    pub held_back_by: Option<anergy_core::ids::EdgeId>,
+}
+
 pub(super) fn blocked_event(
     plan: &Plan,
     station: usize,
     time: Time,
     blocked: bool,
-    flow: f64,
-    wanted: f64,
+    delivery: Delivery,
 ) -> Event {
     let component = plan.station_names[station].clone();
     let density = plan.network.medium.density_kg_m3;
     let l_min = |m: f64| anergy_core::units::l_min(m, density);
     let verb = if blocked { "is blocked: it delivers" } else { "is free again: it delivers" };
+    let by = delivery.held_back_by.map_or(String::new(), |edge| {
+        format!("; most of all held back by {}", plan.edge_names[edge.index()])
+    });
     Event {
         time,
         severity: if blocked { Severity::Warning } else { Severity::Info },
         kind: if blocked { "blocked" } else { "unblocked" }.into(),
         message: format!(
-            "{component} {verb} {:.2} of {:.2} l/min wanted",
-            l_min(flow),
-            l_min(wanted)
+            "{component} {verb} {:.2} of {:.2} l/min wanted{by}",
+            l_min(delivery.flow_kg_s),
+            l_min(delivery.wanted_kg_s)
         ),
         component,
     }
