@@ -352,3 +352,87 @@ fn only_pumps_with_a_check_valve_in_their_direction_are_feeders() {
     assert_eq!(found[0].opponents[0].id, "plant");
     assert!(found[0].blocked_by.is_none() && found[0].requested_m_flow_kg_s.is_none());
 }
+
+#[test]
+fn self_acting_valves_follow_to_their_steady_openings() {
+    // Two feeders, and a load behind a controller of the pressure difference between hot and cold.
+    let text = r#"format = 1
+[[node]]
+id = "hot"
+[[node]]
+id = "cold"
+[[node]]
+id = "a"
+[[node]]
+id = "b"
+[[node]]
+id = "behind"
+[[edge]]
+id = "one"
+kind = "pump"
+from = "cold"
+to = "a"
+head_max_hpa = 402.21
+free_flow_l_min = 55.33
+speed = 0.8
+[[edge]]
+id = "one_check"
+kind = "check_valve"
+from = "a"
+to = "hot"
+kvs_m3_h = 11
+[[edge]]
+id = "two"
+kind = "pump"
+from = "cold"
+to = "b"
+head_max_hpa = 402.21
+free_flow_l_min = 55.33
+speed = 0.78
+[[edge]]
+id = "two_check"
+kind = "check_valve"
+from = "b"
+to = "hot"
+kvs_m3_h = 1.5
+[[edge]]
+id = "controller"
+kind = "dp_controller"
+from = "hot"
+to = "behind"
+kvs_m3_h = 2
+high_node = "behind"
+low_node = "cold"
+dp_set_hpa = 80
+[[edge]]
+id = "load"
+kind = "resistance"
+from = "behind"
+to = "cold"
+dp_nominal_hpa = 100
+m_flow_nominal_kg_min = 12
+[pressure_reference]
+node = "cold"
+"#;
+    let model = model(text);
+    // Within its band of 8 hPa.
+    let steady = steady::solve(&model).unwrap();
+    let sensed_pa = steady.node("behind").unwrap().p_pa - steady.node("cold").unwrap().p_pa;
+    assert!((8100.0..8700.0).contains(&sensed_pa), "{sensed_pa}");
+    for (margin, other) in margins(&model).iter().zip(["two", "one"]) {
+        let speed = format!("{}.speed", margin.id);
+        let simulated = zero_of_flow(&model, &margin.id, &speed, 0.3, 1.0);
+        let threshold = margin.threshold_speed.unwrap();
+        assert!((threshold - simulated).abs() < THRESHOLD, "{threshold}, {simulated}");
+        // The influence with the valve following, by differences.
+        let slower = set(&format!("{other}.speed"), margin_of(&model, other).speed - 1e-4);
+        let slower = margin_of(&model.with(&[slower]).unwrap(), &margin.id);
+        let change = (margin.opposing_dp_pa.unwrap() - slower.opposing_dp_pa.unwrap()) / 1e-4;
+        let influence = margin.opponents[0].opposing_dp_by_position_pa;
+        assert!((influence / change - 1.0).abs() < 1e-3, "{other}: {influence}, {change}");
+    }
+}
+
+fn margin_of(model: &Model, id: &str) -> FeederMargin {
+    margins(model).into_iter().find(|margin| margin.id == id).unwrap()
+}

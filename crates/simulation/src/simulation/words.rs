@@ -87,6 +87,7 @@ pub(super) fn reach_event(time: Time, held: bool, unreached: Unreached) -> Event
 }
 
 /// What a station delivers when its flag changes.
+#[derive(Clone, Copy)]
 pub(super) struct Delivery {
     pub flow_kg_s: f64,
     pub wanted_kg_s: f64,
