@@ -319,6 +319,30 @@ fn what_follows_by_itself_follows() {
 }
 
 #[test]
+fn a_feeder_whose_flow_is_prescribed_has_the_threshold_of_its_speed() {
+    let houses = at_speeds(&three_houses(), &[("sf1", 0.95), ("sf2", 1.0)]);
+    let text = houses.text.split("[[schedule]]").next().unwrap().to_owned()
+        + "[pressure_reference]\nnode = \"sf4.cold\"\npressure_bar = 1.5\n\
+           [[prescribed]]\nid = \"given\"\nquantity = \"sf1.feed_in_pump.m_flow_kg_s\"\nvalue = 1\n\
+           unit = \"kg_min\"\nfree = \"sf1.feed_in_pump.speed\"\n";
+    let given = model(&text);
+    let simulation = settled(&given);
+    let mut analysis = Analysis::new(&simulation).unwrap();
+    let found = analysis.margins().unwrap();
+    // Without SF1 the two networks are one.
+    let (own, plain) = (&found[0], &margins(&houses)[0]);
+    let difference = own.threshold_speed.unwrap() - plain.threshold_speed.unwrap();
+    assert!(difference.abs() < 1e-9, "{difference}");
+    assert!(own.speed > own.threshold_speed.unwrap() && own.speed < 0.96, "{own:?}");
+    // SF2 works against a flow that stays, and not against a speed.
+    let limits = analysis.limits().unwrap();
+    assert_eq!(limits[0].opponents.len(), 1);
+    assert!(limits[1].opponents.is_empty(), "{limits:?}");
+    let without = found[1].threshold_speed;
+    assert!(without.is_some_and(|threshold| threshold < 0.7), "{without:?}");
+}
+
+#[test]
 fn only_pumps_with_a_check_valve_in_their_direction_are_feeders() {
     // A plant without check valve, a pump against its check valve, one with a pipe between both.
     let edge = |id: &str, kind: &str, from: &str, to: &str, rest: &str| {

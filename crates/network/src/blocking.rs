@@ -319,7 +319,13 @@ impl Blocking {
     ) -> Result<Option<f64>, HydraulicError> {
         let Self { linearization, state, .. } = self;
         match linearization.solve_without(network, state, Some(feeder.pump)) {
-            Err(HydraulicError::Unbalanced { .. } | HydraulicError::Absurd { .. }) => Ok(None),
+            Err(
+                HydraulicError::Unbalanced { .. }
+                | HydraulicError::Absurd { .. }
+                | HydraulicError::NoEffect { .. }
+                | HydraulicError::Undetermined { .. }
+                | HydraulicError::Undecided { .. },
+            ) => Ok(None),
             Err(error) => Err(error),
             Ok(()) if linearization.floats(network, feeder.pump) => Ok(None),
             Ok(()) => Ok(Some(-state.driving_pa(network, feeder.pump.index()))),

@@ -175,9 +175,7 @@ impl<'a> Analysis<'a> {
         for feeder in feeders {
             let margin = self.ask(|blocking, network| blocking.margin(network, feeder))?;
             let mut opponents = Vec::new();
-            for influence in
-                margin.influences.iter().filter(|i| i.opposing_dp_by_position_pa != 0.0)
-            {
+            for influence in margin.influences.iter().filter(|i| !is_free(plan, i.edge)) {
                 let limit = self.limit(feeder, &[influence.edge])?;
                 let Opponent { id, quantity, .. } = opponent(plan, influence);
                 opponents.push(OpponentLimit {
@@ -261,6 +259,7 @@ impl<'a> Analysis<'a> {
             .filter(|&i| matches!(plan.network().edges[i].element, Element::Valve(_)))
             .filter(|&i| here[i] > 0.0)
             .map(EdgeId::from_index)
+            .filter(|valve| !is_free(plan, *valve))
             .collect();
         let (_, influences) =
             self.ask(|blocking, network| blocking.influences(network, feeder, &valves))?;
@@ -297,6 +296,11 @@ impl<'a> Analysis<'a> {
 
 fn name(plan: &Plan, edge: EdgeId) -> String {
     plan.edge_names[edge.index()].to_string()
+}
+
+/// Whether the position of an edge is what a prescription needs.
+fn is_free(plan: &Plan, edge: EdgeId) -> bool {
+    plan.network.prescriptions.iter().any(|prescription| prescription.free == edge)
 }
 
 fn opponent(plan: &Plan, influence: &Influence) -> Opponent {
