@@ -180,7 +180,7 @@ fn variant_b_no_blocking_when_sf1_is_the_near_feeder() {
             "from = \"sf1\"\nto = \"sf4\"\nlength_m = 50",
             1,
         );
-    assert_ne!(text, nearer);
+    assert_ne!(*text, nearer);
     let model = Model::from_toml(&nearer, &workspace()).unwrap();
     let (v1, v2, _) = flows(&at_speeds(&model, 0.95, 1.0));
     assert!(v1 > 3.5 * 0.6, "SF1 delivers {v1} l/min");

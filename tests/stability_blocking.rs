@@ -117,7 +117,7 @@ fn who_blocks_whom() {
     // (b) SF1 nearer than SF2: none is blocked, though SF2 is the slower one to be held back then.
     let text =
         houses.text.replacen("from = \"sf2\"\nto = \"sf4\"", "from = \"sf1\"\nto = \"sf4\"", 1);
-    assert_ne!(text, houses.text);
+    assert_ne!(text, *houses.text);
     for found in margins(&at_speeds(&model(&text), &[("sf1", 0.95), ("sf2", 1.0)])) {
         assert!(
             !found.blocked && !found.held_back && found.margin_speed.unwrap() > 0.02,

@@ -133,7 +133,7 @@ impl Model {
     ///
     /// As it was written; after `set` or `scale` as plain nodes and edges, as `expand` gives.
     fn to_toml(&self, py: Python<'_>) -> PyResult<String> {
-        if self.changes.is_empty() { Ok(self.model.text.clone()) } else { self.plain(py) }
+        if self.changes.is_empty() { Ok(self.model.text.to_string()) } else { self.plain(py) }
     }
 
     /// Writes the model file; `from_file` reads the same model back.

@@ -1,5 +1,6 @@
 //! A model text as a tree of values that remember their place; TOML or JSON.
 
+mod pieces;
 mod span;
 
 pub use span::Span;
@@ -171,6 +172,11 @@ impl Tree {
 /// # Errors
 /// The syntax errors, or numbers that are not finite, with their places.
 pub fn parse_toml(text: &str) -> Result<Tree, Diagnostics> {
+    pieces::parse_large(text).map_or_else(|| parse(text, 0), Ok)
+}
+
+/// Parses a text that begins at a byte of another one.
+fn parse(text: &str, first: usize) -> Result<Tree, Diagnostics> {
     let (table, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
         let problems = errors.iter().map(|error| {
@@ -178,60 +184,65 @@ pub fn parse_toml(text: &str) -> Result<Tree, Diagnostics> {
         });
         return Err(Diagnostics(problems.collect()));
     }
-    let mut problems = Vec::new();
-    let span = table.span();
-    let tree = convert_table(table.get_ref(), span, &mut problems);
+    let mut converter = Converter { first, problems: Vec::new() };
+    let tree = converter.table(table.get_ref(), table.span());
+    let Converter { problems, .. } = converter;
     if problems.is_empty() { Ok(tree) } else { Err(Diagnostics(problems)) }
 }
 
-fn convert_table(table: &DeTable<'_>, span: Range<usize>, problems: &mut Vec<Diagnostic>) -> Tree {
-    let entries = table
-        .iter()
-        .map(|(key, value)| {
-            let name = SmolStr::new(key.get_ref());
-            let tree = convert(value.get_ref(), value.span(), &name, problems);
-            (Key { name, span: key.span().into() }, tree)
-        })
-        .collect();
-    Tree { span: span.into(), kind: TreeKind::Table(entries) }
+/// Turns what the parser says into a tree.
+struct Converter {
+    /// Where the text begins.
+    first: usize,
+    problems: Vec<Diagnostic>,
 }
 
-fn convert(
-    value: &DeValue<'_>,
-    span: Range<usize>,
-    name: &str,
-    problems: &mut Vec<Diagnostic>,
-) -> Tree {
-    let mut wrong = |what: String| {
-        problems.push(Diagnostic::new(format!("{name} = {what}"), Some(span.clone())));
-        Scalar::Nothing
-    };
-    let scalar = match value {
-        DeValue::String(text) => Scalar::Text(text.as_ref().into()),
-        DeValue::Boolean(flag) => Scalar::Flag(*flag),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .map_or_else(
-                |_| wrong(format!("{integer} is too large a number")),
-                |integer| Scalar::Number(integer.into()),
-            ),
-        DeValue::Float(float) => {
-            let number = float.as_str().parse::<f64>().ok().and_then(Number::from_f64);
-            number.map_or_else(
-                || wrong(format!("{} is not a finite number", float.as_str())),
-                Scalar::Number,
-            )
-        }
-        DeValue::Datetime(datetime) => Scalar::Text(datetime.to_string().into()),
-        DeValue::Array(items) => {
-            let items = items
-                .iter()
-                .map(|item| convert(item.get_ref(), item.span(), name, problems))
-                .collect();
-            return Tree { span: span.into(), kind: TreeKind::Array(items) };
-        }
-        DeValue::Table(table) => return convert_table(table, span, problems),
-    };
-    Tree { span: span.into(), kind: TreeKind::Scalar(scalar) }
+impl Converter {
+    fn span(&self, range: Range<usize>) -> Span {
+        (self.first + range.start..self.first + range.end).into()
+    }
+
+    fn table(&mut self, table: &DeTable<'_>, range: Range<usize>) -> Tree {
+        let entries = table.iter().map(|(key, value)| {
+            let name = SmolStr::new(key.get_ref());
+            let tree = self.value(value.get_ref(), value.span(), &name);
+            (Key { name, span: self.span(key.span()) }, tree)
+        });
+        let kind = TreeKind::Table(entries.collect());
+        Tree { span: self.span(range), kind }
+    }
+
+    fn value(&mut self, value: &DeValue<'_>, range: Range<usize>, name: &str) -> Tree {
+        let span = self.span(range.clone());
+        let mut wrong = |what: String| {
+            let problem = Diagnostic::new(format!("{name} = {what}"), span.range());
+            self.problems.push(problem);
+            Scalar::Nothing
+        };
+        let scalar = match value {
+            DeValue::String(text) => Scalar::Text(text.as_ref().into()),
+            DeValue::Boolean(flag) => Scalar::Flag(*flag),
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .map_or_else(
+                    |_| wrong(format!("{integer} is too large a number")),
+                    |integer| Scalar::Number(integer.into()),
+                ),
+            DeValue::Float(float) => {
+                let number = float.as_str().parse::<f64>().ok().and_then(Number::from_f64);
+                number.map_or_else(
+                    || wrong(format!("{} is not a finite number", float.as_str())),
+                    Scalar::Number,
+                )
+            }
+            DeValue::Datetime(datetime) => Scalar::Text(datetime.to_string().into()),
+            DeValue::Array(items) => {
+                let items = items.iter().map(|item| self.value(item.get_ref(), item.span(), name));
+                return Tree { kind: TreeKind::Array(items.collect()), span };
+            }
+            DeValue::Table(table) => return self.table(table, range),
+        };
+        Tree { span, kind: TreeKind::Scalar(scalar) }
+    }
 }
 
 /// Writes a JSON object as TOML text.

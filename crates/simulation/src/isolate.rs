@@ -4,6 +4,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{DriverSpec, Model, Place};
 use crate::model_file::{Interpolation, NodeEntryKind};
 use anergy_network::elements::ElementParams;
+use smol_str::format_smolstr;
 use std::collections::{HashMap, HashSet};
 
 /// What is given at a cut node.
@@ -159,9 +160,9 @@ impl Model {
             })
             .chain(model.prescriptions.iter().map(|p| format!("{}.value", p.id)))
             .collect();
-        model
-            .drivers
-            .retain(|driver| component(&driver.signal) || set_points.contains(&driver.signal));
+        model.drivers.retain(|driver| {
+            component(&driver.signal) || set_points.contains(driver.signal.as_str())
+        });
         for cut in boundary {
             let quantity = match cut.kind {
                 CutKind::Pressure => "pressure_pa",
@@ -169,12 +170,12 @@ impl Model {
             };
             for (quantity, values) in [(quantity, &cut.values), ("temperature_k", &cut.t_k)] {
                 model.drivers.push(DriverSpec {
-                    signal: format!("{}.{quantity}", cut.node),
+                    signal: format_smolstr!("{}.{quantity}", cut.node),
                     unit: None,
                     interpolation: Interpolation::Linear,
                     times_s: cut.times_s.as_slice().into(),
                     values: values.as_slice().into(),
-                    source: format!("isolate at \"{}\"", cut.node),
+                    source: format_smolstr!("isolate at \"{}\"", cut.node),
                     place: Place::default(),
                 });
             }

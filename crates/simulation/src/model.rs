@@ -150,9 +150,9 @@ pub struct PrescriptionSpec {
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriverSpec {
     /// The signal.
-    pub signal: String,
+    pub signal: SmolStr,
     /// Unit of the values; `None` is SI.
-    pub unit: Option<String>,
+    pub unit: Option<SmolStr>,
     /// Between the points.
     pub interpolation: Interpolation,
     /// Times, s since the start.
@@ -160,7 +160,7 @@ pub struct DriverSpec {
     /// Values in `unit`.
     pub values: Arc<[f64]>,
     /// Where it comes from, for messages.
-    pub source: String,
+    pub source: SmolStr,
     /// Where it stands.
     pub place: Place,
 }
@@ -180,7 +180,7 @@ pub struct Model {
     /// Title.
     pub name: String,
     /// The text it was read from.
-    pub text: String,
+    pub text: Arc<str>,
     /// The tables it was read from.
     pub tables: Tables,
     /// How to run it.
@@ -231,7 +231,7 @@ impl Model {
     /// found by [`crate::build`].
     pub fn from_toml(text: &str, dir: &Path) -> Result<Self, Diagnostics> {
         let tree = crate::document::parse_toml(text)?;
-        crate::model_file::read::model(&tree, text, dir)
+        crate::model_file::read::model(tree, text, dir)
     }
 
     /// Reads a model from a JSON object with the same grammar.

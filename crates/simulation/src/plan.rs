@@ -18,7 +18,7 @@ use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::Equipment;
 use smol_str::SmolStr;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// A unit with its places in the flat state.
 #[derive(Debug, Clone)]
@@ -249,7 +249,7 @@ pub struct Plan {
     pub(crate) nodes_on_map: Vec<NodeOnMap>,
     pub(crate) edges_on_map: Vec<EdgeOnMap>,
     pub(crate) model_name: String,
-    pub(crate) model_text: String,
+    pub(crate) model_text: Arc<str>,
     pub(crate) start_unix_ns: i64,
     pub(crate) step: Time,
     pub(crate) record: Time,

@@ -82,7 +82,7 @@ fn header(plan: &crate::plan::Plan, until: Time, step: Time, record: Time) -> Ru
     let setting = |name: &str, value: String| (name.to_owned(), value);
     RunHeader {
         model_name: plan.model_name.clone(),
-        model_text: plan.model_text.clone(),
+        model_text: plan.model_text.to_string(),
         start_unix_ns: plan.start_unix_ns,
         settings: vec![
             setting("program", format!("anergy {}", env!("CARGO_PKG_VERSION"))),

@@ -33,7 +33,7 @@ impl Model {
                 return build(&self.model);
             }
             let mut model = self.model.clone();
-            model.text = model.to_plain_toml()?;
+            model.text = model.to_plain_toml()?.into();
             build(&model)
         });
         // Places are always those of the text that was read.
@@ -46,7 +46,7 @@ impl Model {
     }
 
     pub(super) fn document(&self, py: Python<'_>) -> PyResult<Value> {
-        let text = if self.changes.is_empty() { &self.model.text } else { &self.plain(py)? };
+        let text = if self.changes.is_empty() { &*self.model.text } else { &*self.plain(py)? };
         let tree = document::parse_toml(text);
         let tree = tree.map_err(|error| errors::model_error(py, &error, text, &self.origin))?;
         Ok(tree.to_json())
@@ -112,7 +112,7 @@ pub(super) fn pickle<'py>(model: &Model, py: Python<'py>) -> PyResult<Bound<'py,
             _ => {}
         }
     }
-    let text = series.as_ref().unwrap_or(&model.model.text);
+    let text = series.as_deref().unwrap_or(&model.model.text);
     let load = py.import("anergy._core")?.getattr("_load_model")?;
     let arguments = (text, model.directory.as_os_str(), path, given_as_dict, changes);
     Ok((load, arguments).into_pyobject(py)?.into_any())

@@ -65,7 +65,7 @@ impl Surroundings {
                 "needs a temperature that changes, and what is around \"{component}\" is constant"
             ),
         })?;
-        own.clone_into(&mut driver.signal);
+        driver.signal = own.into();
         driver.times_s = driver.times_s.iter().map(|time_s| time_s + self.lag_s).collect();
         Ok(driver)
     }

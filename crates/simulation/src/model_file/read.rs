@@ -17,7 +17,7 @@ use super::tables::Rows;
 use super::*;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::document::Span;
-use crate::document::{Tree, TreeKind};
+use crate::document::{Key, Tree, TreeKind};
 use crate::fields::{Reader, SiTable};
 use crate::model::*;
 use crate::table::Tables;
@@ -57,16 +57,37 @@ pub(super) const SECTIONS: &[&str] = &[
     "effect",
 ];
 
+/// Those that can occur several times.
+const LISTS: [&str; 16] = [
+    "site",
+    "trench",
+    "station",
+    "node",
+    "edge",
+    "three_way_valve",
+    "interface",
+    "unit",
+    "sensor",
+    "controller",
+    "worst_point",
+    "prescribed",
+    "schedule",
+    "series",
+    "pressure_reference",
+    "effect",
+];
+
 /// Reads a whole document.
 ///
 /// # Errors
 /// All problems found.
-pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> {
+pub fn model(mut tree: Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> {
+    let rows = lists(&mut tree);
     let mut reader = ModelReader {
         reader: Reader::default(),
-        tree,
+        tree: &tree,
         dir,
-        rows: Rows::new(),
+        rows,
         holding: Vec::new(),
         tables: Tables::default(),
         sites: HashMap::new(),
@@ -86,11 +107,27 @@ pub fn model(tree: &Tree, text: &str, dir: &Path) -> Result<Model, Diagnostics> 
     }
 }
 
+/// The entries of the sections that can occur several times: taken out, so that each is gone when it is read.
+fn lists(tree: &mut Tree) -> Rows {
+    let TreeKind::Table(sections) = &mut tree.kind else { return Rows::new() };
+    let mut rows = Rows::new();
+    for section in LISTS {
+        let list = |(key, tree): &(Key, Tree)| {
+            key.name == section && matches!(tree.kind, TreeKind::Array(_))
+        };
+        let Some(at) = sections.iter().position(list) else { continue };
+        if let TreeKind::Array(items) = sections.remove(at).1.kind {
+            rows.insert(section, items);
+        }
+    }
+    rows
+}
+
 struct ModelReader<'a> {
     reader: Reader,
     tree: &'a Tree,
     dir: &'a Path,
-    /// Entries that come from tables and station types, by section.
+    /// Entries of the sections that can occur several times, also those that come from tables and types.
     rows: Rows,
     /// Their places.
     tables: Tables,
@@ -190,7 +227,7 @@ impl ModelReader<'_> {
             }
         }
         let model = Model {
-            text: text.to_owned(),
+            text: text.into(),
             tables: self.tables.clone(),
             units: self.units(&stations),
             interfaces,
@@ -274,28 +311,13 @@ impl ModelReader<'_> {
 
     /// The entries of a section that can occur several times, and those of the tables.
     fn items(&mut self, section: &str) -> Vec<Tree> {
-        let mut items = self.written(section);
-        items.extend(self.rows.remove(section).unwrap_or_default());
-        items
-    }
-
-    fn written(&mut self, section: &str) -> Vec<Tree> {
-        match self.tree.get(section) {
-            None => Vec::new(),
-            Some(tree) => match &tree.kind {
-                TreeKind::Array(items) => items.clone(),
-                _ => {
-                    self.reader.report(
-                        Diagnostic::new(
-                            format!("`{section}` can occur several times"),
-                            tree.span.range(),
-                        )
-                        .with_hint(format!("write [[{section}]] with double brackets")),
-                    );
-                    Vec::new()
-                }
-            },
+        if let Some(tree) = self.tree.get(section) {
+            let message = format!("`{section}` can occur several times");
+            let problem = Diagnostic::new(message, tree.span.range());
+            let hint = format!("write [[{section}]] with double brackets");
+            self.reader.report(problem.with_hint(hint));
         }
+        self.rows.remove(section).unwrap_or_default()
     }
 
     fn start(&mut self, run: &RunEntry, place: &Place) -> Option<Timestamp> {

@@ -5,6 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::model::DriverSpec;
 use crate::model_file::{ScheduleEntry, SeriesEntry, series};
 use jiff::Timestamp;
+use smol_str::{SmolStr, format_smolstr};
 
 impl ModelReader<'_> {
     pub(super) fn drivers(&mut self, start: Option<Timestamp>) -> Vec<DriverSpec> {
@@ -30,34 +31,39 @@ impl ModelReader<'_> {
                 continue;
             }
             drivers.push(DriverSpec {
-                signal: entry.signal,
-                unit: entry.unit,
+                signal: entry.signal.into(),
+                unit: entry.unit.map(SmolStr::from),
                 interpolation: entry.interpolation,
                 times_s: times_s.into(),
                 values: values.into(),
                 place: place(&what, &tree, &table),
-                source: what,
+                source: what.into(),
             });
         }
         let mut entries = Vec::new();
         for tree in self.items("series") {
             let what = format!("series of \"{}\"", tree.text("signal").unwrap_or("?"));
             if let Some((entry, table)) = self.reader.read::<SeriesEntry>(&what, &tree) {
-                entries.push((what, entry, table, tree));
+                entries.push((place(&what, &tree, &table), entry, tree));
             }
         }
         let mut files = series::Files::new(self.dir, start, entries.iter().map(|entry| &entry.1));
-        for (what, entry, table, tree) in &entries {
+        for (place, entry, tree) in &entries {
             match files.load(entry, tree) {
                 Err(problem) => self.reader.report(problem),
                 Ok((times_s, values)) => drivers.push(DriverSpec {
-                    signal: entry.signal.clone(),
-                    unit: entry.unit.clone(),
+                    signal: entry.signal.as_str().into(),
+                    unit: entry.unit.as_deref().map(SmolStr::new),
                     interpolation: entry.interpolation,
                     times_s,
                     values,
-                    source: format!("{what} ({}, column {})", entry.file, entry.column),
-                    place: place(what, tree, table),
+                    source: format_smolstr!(
+                        "{} ({}, column {})",
+                        place.entry,
+                        entry.file,
+                        entry.column
+                    ),
+                    place: place.clone(),
                 }),
             }
         }

@@ -183,6 +183,7 @@ impl ModelReader<'_> {
         }
         let mut found = PipeTypes::new();
         names(self.tree, &mut found);
+        self.rows.values().flatten().for_each(|entry| names(entry, &mut found));
         found
     }
 }
