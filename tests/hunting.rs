@@ -20,7 +20,7 @@ fn model(n: usize, changes: &[(&str, &str)]) -> Model {
 }
 
 fn analysis(model: &Model) -> Hunting {
-    hunting(&Simulation::new(build(model).unwrap()).unwrap()).unwrap()
+    hunting(&mut Simulation::new(build(model).unwrap()).unwrap()).unwrap()
 }
 
 #[test]

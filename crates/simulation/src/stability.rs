@@ -8,10 +8,12 @@ mod chain;
 mod law;
 mod loops;
 mod modes;
+mod periodic;
+mod response;
 mod secant;
 
 use crate::build::build;
-use crate::channels::Source;
+use crate::channels::{self, Source};
 use crate::error::RunError;
 use crate::gains::{Gains, measured, reach};
 use crate::model::Model;
@@ -19,10 +21,15 @@ use crate::plan::{Plan, PlannedController};
 use crate::simulation::Simulation;
 use crate::state::State;
 use crate::steady::settle;
+use anergy_core::clock::Time;
+use anergy_core::ids::SignalId;
 use anergy_network::hydraulics::linearize::Valves;
 use law::Law;
 use loops::{Loops, Seen};
+use modes::Found;
 use nalgebra::DMatrix;
+use periodic::{PeriodicLoops, Ticks};
+use response::{StepResponse, responses};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -98,7 +105,7 @@ pub struct Stability {
 pub fn analyse(model: &Model) -> Result<Stability, RunError> {
     let mut simulation = Simulation::new(build(model)?)?;
     settle(&mut simulation)?;
-    let Hunting { modes, controllers } = hunting(&simulation)?;
+    let Hunting { modes, controllers } = hunting(&mut simulation)?;
     Ok(Stability { modes, controllers })
 }
 
@@ -112,8 +119,10 @@ struct Closed {
 ///
 /// # Errors
 /// When the network cannot be linearised.
-pub fn hunting(simulation: &Simulation) -> Result<Hunting, RunError> {
-    let (plan, state) = (&**simulation.plan(), simulation.state());
+pub fn hunting(simulation: &mut Simulation) -> Result<Hunting, RunError> {
+    let plan = simulation.plan().clone();
+    let plan = &*plan;
+    let state = simulation.state();
     let mut hunting = Hunting::default();
     let mut closed = Vec::new();
     for (controller, planned) in plan.controllers.iter().enumerate() {
@@ -140,36 +149,65 @@ pub fn hunting(simulation: &Simulation) -> Result<Hunting, RunError> {
             closed.push(Closed { controller, law });
         }
     }
-    let gains = gains(simulation, &closed)?;
-    for group in groups(plan, &closed, &gains) {
-        judge(plan, state, &closed, &group, &gains, &mut hunting);
+    let answers = answers(simulation, &closed)?;
+    for group in groups(plan, &closed, &answers.gains) {
+        judge(plan, simulation.state(), &closed, &group, &answers, &mut hunting);
     }
     hunting.modes.sort_by(|a, b| b.growth_per_s.total_cmp(&a.growth_per_s));
     Ok(hunting)
 }
 
-/// Gains of the measured values (rows) over the outputs of closed loops.
-fn gains(simulation: &Simulation, closed: &[Closed]) -> Result<DMatrix<f64>, RunError> {
-    let (plan, state) = (&**simulation.plan(), simulation.state());
-    let sources: Vec<Source> = closed
-        .iter()
-        .flat_map(|c| &plan.controllers[c.controller].measures)
-        .map(|source| measured(plan, *source).0)
-        .collect();
-    let outputs: Vec<_> = closed
-        .iter()
-        .flat_map(|c| plan.controllers[c.controller].acts_on.iter().copied())
-        .collect();
-    let mut matrix = DMatrix::zeros(sources.len(), outputs.len());
-    let mut network = Gains::new(plan, state, Valves::Stay)
-        .map_err(|error| crate::simulation::named(plan, state.time, &error))?;
-    for (j, signal) in outputs.iter().enumerate() {
-        let Some(reach) = reach(plan, state, *signal) else { continue };
-        for (i, gain) in network.column(plan, state, &reach, &sources).into_iter().enumerate() {
-            matrix[(i, j)] = gain.unwrap_or(0.0);
+/// What measured values (rows) do after a change of an output.
+struct Answers {
+    /// Of the water, or what is left at last.
+    gains: DMatrix<f64>,
+    /// Where temperatures take part: value, output, response.
+    slow: Vec<(usize, usize, StepResponse)>,
+}
+
+/// Answers of the measured values to the outputs of closed loops.
+fn answers(simulation: &mut Simulation, closed: &[Closed]) -> Result<Answers, RunError> {
+    let plan = simulation.plan().clone();
+    let planned = || closed.iter().map(|c| &plan.controllers[c.controller]);
+    let sources: Vec<(Source, Option<Source>)> =
+        planned().flat_map(|c| &c.measures).map(|source| measured(&plan, *source)).collect();
+    let outputs: Vec<_> =
+        planned().flat_map(|c| c.acts_on.iter().copied().zip(c.limits.iter().copied())).collect();
+    let mut gains = DMatrix::zeros(sources.len(), outputs.len());
+    let mut open = Vec::new();
+    let state = simulation.state();
+    let mut network = Gains::new(&plan, state, Valves::Stay)
+        .map_err(|error| crate::simulation::named(&plan, state.time, &error))?;
+    let all: Vec<Source> =
+        sources.iter().flat_map(|(of, minus)| [*of, minus.unwrap_or(*of)]).collect();
+    for (j, (signal, _)) in outputs.iter().enumerate() {
+        let known = reach(&plan, state, *signal)
+            .map(|reach| network.column(&plan, state, &reach, &all))
+            .unwrap_or_else(|| vec![None; all.len()]);
+        for (i, (_, minus)) in sources.iter().enumerate() {
+            let less = if minus.is_some() { known[2 * i + 1] } else { Some(0.0) };
+            match known[2 * i].zip(less) {
+                Some((gain, less)) => gains[(i, j)] = gain - less,
+                None => open.push((i, j)),
+            }
         }
     }
-    Ok(matrix)
+    let mut slow = Vec::new();
+    if !open.is_empty() {
+        let read = |simulation: &Simulation| -> Vec<f64> {
+            let value = |of| channels::value(simulation.plan(), simulation.state(), of);
+            sources.iter().map(|(of, minus)| value(*of) - minus.map_or(0.0, value)).collect()
+        };
+        let found = responses(simulation, &outputs, &read)?;
+        for (i, j) in open {
+            let response = found[j][i].clone();
+            gains[(i, j)] = response.settled();
+            if response.settled() != 0.0 || response.time_s() > 0.0 {
+                slow.push((i, j, response));
+            }
+        }
+    }
+    Ok(Answers { gains, slow })
 }
 
 fn inputs(planned: &PlannedController) -> usize {
@@ -218,36 +256,107 @@ fn groups(plan: &Plan, closed: &[Closed], gains: &DMatrix<f64>) -> Vec<Vec<usize
     groups.into_values().collect()
 }
 
-/// The loops of some closed controllers.
-fn loops(
-    plan: &Plan,
-    state: &State,
-    closed: &[Closed],
-    group: &[usize],
-    gains: &DMatrix<f64>,
-) -> Loops {
-    let places = places(plan, closed);
-    let rows: Vec<usize> = group.iter().flat_map(|&i| places[i].0.clone()).collect();
-    let columns: Vec<usize> = group.iter().flat_map(|&i| places[i].1.clone()).collect();
-    let own = DMatrix::from_fn(rows.len(), columns.len(), |i, j| gains[(rows[i], columns[j])]);
-    let planned = || group.iter().map(|&i| &plan.controllers[closed[i].controller]);
-    let seen: Vec<Seen> = planned()
-        .flat_map(|planned| &planned.measures)
-        .map(|source| match source {
+/// A group of closed controllers with what it takes to analyse it.
+struct Group<'a> {
+    planned: Vec<&'a PlannedController>,
+    laws: Vec<Law>,
+    gains: DMatrix<f64>,
+    seen: Vec<Seen>,
+    lags_s: Vec<f64>,
+    slow: Vec<(usize, usize, StepResponse)>,
+}
+
+impl<'a> Group<'a> {
+    fn new(
+        plan: &'a Plan,
+        state: &State,
+        closed: &[Closed],
+        members: &[usize],
+        answers: &Answers,
+    ) -> Self {
+        let places = places(plan, closed);
+        let rows: Vec<usize> = members.iter().flat_map(|&i| places[i].0.clone()).collect();
+        let columns: Vec<usize> = members.iter().flat_map(|&i| places[i].1.clone()).collect();
+        let place = |all: &[usize], one: usize| all.iter().position(|i| *i == one);
+        let slow = answers.slow.iter().filter_map(|(i, j, response)| {
+            Some((place(&rows, *i)?, place(&columns, *j)?, response.clone()))
+        });
+        let planned: Vec<&PlannedController> =
+            members.iter().map(|&i| &plan.controllers[closed[i].controller]).collect();
+        let sensor = |source: &Source| match source {
             Source::Sensor(i) => {
                 let sensor = &plan.sensors[*i].sensor;
                 Seen { lag_s: sensor.time_constant_s(), dead_s: sensor.dead_time_s() }
             }
             _ => Seen { lag_s: 0.0, dead_s: 0.0 },
-        })
-        .collect();
-    let lags: Vec<f64> = planned()
-        .flat_map(|planned| &planned.acts_on)
-        .map(|signal| reach(plan, state, *signal).map_or(0.0, |reach| reach.lag_s))
-        .collect();
-    let interval_s = planned().map(|planned| planned.interval.as_s()).fold(0.0, f64::max);
-    let laws = group.iter().map(|&i| closed[i].law.clone()).collect();
-    Loops::new(laws, own, &seen, &lags, interval_s)
+        };
+        let lag = |signal: &SignalId| reach(plan, state, *signal).map_or(0.0, |reach| reach.lag_s);
+        Self {
+            gains: DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+                answers.gains[(rows[i], columns[j])]
+            }),
+            slow: slow.collect(),
+            seen: planned.iter().flat_map(|c| &c.measures).map(sensor).collect(),
+            lags_s: planned.iter().flat_map(|c| &c.acts_on).map(lag).collect(),
+            laws: members.iter().map(|&i| closed[i].law.clone()).collect(),
+            planned,
+        }
+    }
+
+    /// The loops, where all controllers update together; the interval is 0 where they are continuous.
+    fn together(&self) -> Loops {
+        let interval = self.planned.iter().map(|c| c.interval).max().unwrap_or(Time::ZERO);
+        Loops::new(
+            self.laws.clone(),
+            self.gains.clone(),
+            &self.seen,
+            &self.lags_s,
+            interval.as_s(),
+            self.slow.clone(),
+        )
+    }
+
+    /// Whether they do.
+    fn is_together(&self) -> bool {
+        let timing = |c: &PlannedController| (c.interval, c.controller.timing().offset_s.to_bits());
+        self.planned.iter().all(|c| timing(c) == timing(self.planned[0]))
+    }
+
+    /// What the loops do; `None` where they are too many with different timing.
+    fn analyse(&self, plan: &Plan, state: &State) -> Option<Found> {
+        if self.is_together() {
+            return Some(modes::analyse(&self.together()));
+        }
+        if !self.slow.is_empty() {
+            return None;
+        }
+        // What is continuous updates at every step of a run.
+        let every = |c: &PlannedController| {
+            if c.interval > Time::ZERO { c.interval.0 } else { plan.step.0 }
+        };
+        let first = |c: &PlannedController| {
+            Time::from_s(c.controller.timing().offset_s).unwrap_or(Time::ZERO).0
+        };
+        let all = self.planned.iter().flat_map(|c| [every(c), first(c)]);
+        let tick = all.fold(0, periodic::gcd);
+        let of_step = |c: &&PlannedController| {
+            let interval_s = if c.interval > Time::ZERO { c.interval } else { plan.step }.as_s();
+            Law::of(plan, state, c, interval_s)
+        };
+        let loops = PeriodicLoops {
+            laws: self.planned.iter().map(of_step).collect(),
+            ticks: self
+                .planned
+                .iter()
+                .map(|c| Ticks { every: every(c) / tick, first: first(c) / tick })
+                .collect(),
+            gains: self.gains.clone(),
+            seen: self.seen.clone(),
+            actuator_lags_s: self.lags_s.clone(),
+            tick_s: Time(tick).as_s(),
+        };
+        loops.analyse()
+    }
 }
 
 /// Analyses one group.
@@ -256,11 +365,19 @@ fn judge(
     state: &State,
     closed: &[Closed],
     group: &[usize],
-    gains: &DMatrix<f64>,
+    answers: &Answers,
     hunting: &mut Hunting,
 ) {
-    let whole = loops(plan, state, closed, group, gains);
-    let found = modes::analyse(&whole);
+    let whole = Group::new(plan, state, closed, group, answers);
+    let Some(found) = whole.analyse(plan, state) else {
+        for &i in group {
+            hunting.controllers[closed[i].controller].open =
+                Some("its group updates at too many different times to be analysed");
+        }
+        return;
+    };
+    // With different timing, shapes are those of the loops as if they updated together.
+    let whole = whole.together();
     let name = |i: usize| plan.controllers[closed[group[i]].controller].name.clone();
     for root in &found.roots {
         let (shares, phases) = whole.shape(root.s);
@@ -286,7 +403,8 @@ fn judge(
         margin.critical_gain = found.limit.map(|limit| margin.gain * limit.factor);
         margin.critical_period_s = found.limit.map(|limit| TAU / limit.omega_rad_s);
         margin.relative_gain = relative.as_ref().map(|relative| relative[i]);
-        let alone = modes::analyse(&loops(plan, state, closed, &[k], gains));
-        margin.critical_gain_alone = alone.limit.map(|limit| margin.gain * limit.factor);
+        let alone = Group::new(plan, state, closed, &[k], answers).analyse(plan, state);
+        let limit = alone.and_then(|alone| alone.limit);
+        margin.critical_gain_alone = limit.map(|limit| margin.gain * limit.factor);
     }
 }

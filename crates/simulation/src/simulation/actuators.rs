@@ -29,6 +29,11 @@ impl Simulation {
         Ok(())
     }
 
+    /// Actuators have arrived where their commands lead.
+    pub(crate) fn arrive(&mut self) {
+        self.move_actuators(f64::INFINITY);
+    }
+
     /// Actuators follow their commands; an infinite `dt_s` settles them. The extraction valve of a
     /// station waits for its pump.
     pub(super) fn move_actuators(&mut self, dt_s: f64) {

@@ -8,6 +8,7 @@
 
 use super::chain::{Chain, SampledChain};
 use super::law::Law;
+use super::response::StepResponse;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The loops of a group.
@@ -21,6 +22,8 @@ pub(super) struct Loops {
     sampled: Vec<SampledChain>,
     /// Interval of all controllers, s; 0 where they are continuous.
     pub interval_s: f64,
+    /// Responses in which temperatures take part, in place of gains: value, output.
+    slow: Vec<(usize, usize, StepResponse)>,
     /// Controller of each output.
     pub owner: Vec<usize>,
     /// All loops have the same law, chain and timing but for their gains: these.
@@ -42,6 +45,7 @@ impl Loops {
         seen: &[Seen],
         actuator_lags_s: &[f64],
         interval_s: f64,
+        slow: Vec<(usize, usize, StepResponse)>,
     ) -> Self {
         let mut chains: Vec<Chain> = Vec::new();
         let chain_of = DMatrix::from_fn(seen.len(), actuator_lags_s.len(), |i, j| {
@@ -58,7 +62,7 @@ impl Loops {
         };
         let owner = laws.iter().enumerate().flat_map(|(i, law)| vec![i; law.c.nrows()]).collect();
         let mut loops =
-            Self { laws, gains, chain_of, chains, sampled, interval_s, owner, uniform: None };
+            Self { laws, gains, chain_of, chains, sampled, interval_s, slow, owner, uniform: None };
         loops.uniform = loops.uniform_gains();
         loops
     }
@@ -71,7 +75,7 @@ impl Loops {
     /// The gain of each controller where they differ in nothing else.
     fn uniform_gains(&self) -> Option<Vec<f64>> {
         let single = |law: &Law| law.a.nrows() == 1 && law.c.nrows() == 1 && law.b.ncols() == 1;
-        if self.chains.len() != 1 || !self.laws.iter().all(single) {
+        if self.chains.len() != 1 || !self.slow.is_empty() || !self.laws.iter().all(single) {
             return None;
         }
         let parts = |law: &Law| (law.a[(0, 0)], law.c[(0, 0)] * law.b[(0, 0)], law.d[(0, 0)]);
@@ -110,6 +114,17 @@ impl Loops {
         let chains: Vec<Complex<f64>> = (0..self.chains.len()).map(|i| self.chain(i, s)).collect();
         let n = self.len();
         let mut matrix = DMatrix::zeros(n, n);
+        let mut plant = DMatrix::from_fn(self.gains.nrows(), n, |i, j| {
+            chains[self.chain_of[(i, j)]] * self.gains[(i, j)]
+        });
+        for (i, j, response) in &self.slow {
+            // Between two samples the command is held: late by half of the interval.
+            let x = s * self.interval_s;
+            let hold =
+                if x.norm() < 1e-8 { Complex::new(1.0, 0.0) } else { (1.0 - (-x).exp()) / x };
+            let chain = self.chains[self.chain_of[(*i, *j)]].at(s);
+            plant[(*i, *j)] = chain * hold * response.at(s);
+        }
         let variable = self.variable(s);
         let (mut row, mut seen) = (0, 0);
         for law in &self.laws {
@@ -121,8 +136,7 @@ impl Loops {
                         continue;
                     }
                     for j in 0..n {
-                        let chain = chains[self.chain_of[(seen + k, j)]];
-                        matrix[(row + i, j)] += entry * self.gains[(seen + k, j)] * chain;
+                        matrix[(row + i, j)] += entry * plant[(seen + k, j)];
                     }
                 }
             }
@@ -143,7 +157,11 @@ impl Loops {
 
     /// Times between which its frequencies lie, s: the sum of all lags of the slowest chain, the fastest.
     pub fn times_s(&self) -> (f64, f64) {
-        let all = self.chains.iter().map(|chain| chain.total_s().max(self.interval_s));
+        let chains = self.chains.iter().map(|chain| chain.total_s().max(self.interval_s));
+        let slow = self.slow.iter().map(|(i, j, response)| {
+            response.time_s() + self.chains[self.chain_of[(*i, *j)]].total_s()
+        });
+        let all = chains.chain(slow);
         let (min, max) =
             all.fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t), max.max(t)));
         if max > 0.0 { (min.max(1e-3 * max), max) } else { (1.0, 1.0) }

@@ -26,6 +26,10 @@ const NO_PERIOD: f64 = 1e-3;
 /// Steps of the scale from the limit to the present gains, each by this factor at most.
 const SCALE_STEP: f64 = 1.15;
 
+/// A scale beyond all gains, and how far down frequencies are looked for at which integrators prevail.
+const HUGE: f64 = 1e9;
+const MOST_DECADES: usize = 30;
+
 /// A mode of the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Root {
@@ -335,43 +339,43 @@ fn search(loops: &Loops, omegas: &[f64]) -> Vec<C64> {
     found.into_iter().filter(mode).collect()
 }
 
+/// `det(1 + k L(i omega))`.
+fn determinant(case: &Case, factor: f64, omega: f64) -> C64 {
+    let s = C64::new(0.0, omega);
+    match &case.lambdas {
+        Some(lambdas) => {
+            let common = case.loops.common(s) * factor;
+            lambdas.iter().map(|lambda| lambda * common + 1.0).product()
+        }
+        None => case.loops.closed(s, factor).determinant(),
+    }
+}
+
 /// Number of growing modes: turns of the determinant along the imaginary axis.
 ///
 /// With p poles at zero (integrators) it is `p/2 - change of phase/pi`.
 fn count_growing(case: &Case, factor: f64) -> i64 {
-    let loops = case.loops;
-    let det = |omega: f64| {
-        let s = C64::new(0.0, omega);
-        match &case.lambdas {
-            Some(lambdas) => {
-                let common = loops.common(s) * factor;
-                lambdas.iter().map(|lambda| lambda * common + 1.0).product()
-            }
-            None => loops.closed(s, factor).determinant(),
-        }
-    };
-    let (_, slowest) = loops.times_s();
-    // Below all frequencies of the loops, which a small scale moves down.
+    let (_, slowest) = case.loops.times_s();
     let mut low = 1e-4 / slowest;
-    let order = |omega: f64| {
-        let value = (det(0.1 * omega).norm() / det(omega).norm()).log10();
-        (value, value.round())
+    let order = |factor: f64, omega: f64| {
+        let size = |omega| determinant(case, factor, omega).norm();
+        (size(0.1 * omega) / size(omega)).log10()
     };
-    let mut poles = order(low);
-    for _ in 0..12 {
-        if (poles.0 - poles.1).abs() < 0.02 {
+    // With a huge scale every loop with an integrator shows its pole.
+    let poles = order(HUGE, low).round();
+    for _ in 0..MOST_DECADES {
+        if (order(factor, low) - poles).abs() < 0.02 {
             break;
         }
         low *= 0.1;
-        poles = order(low);
     }
-    let high = loops.highest_rad_s();
+    let high = case.loops.highest_rad_s();
     let mut phase = 0.0;
-    let mut at = (low, det(low));
+    let mut at = (low, determinant(case, factor, low));
     let mut step = 1.3;
     while at.0 < high {
         let next = (at.0 * step).min(high);
-        let value = det(next);
+        let value = determinant(case, factor, next);
         let turn = (value / at.1).arg();
         if turn.abs() > 0.7 && step > 1.0005 {
             step = 1.0 + 0.5 * (step - 1.0);
@@ -379,9 +383,9 @@ fn count_growing(case: &Case, factor: f64) -> i64 {
         }
         phase += turn;
         at = (next, value);
-        step = if turn.abs() < 0.3 { (1.0 + 1.5 * (step - 1.0)).min(1.5) } else { step };
+        step = if turn.abs() < 0.3 { (1.0 + 1.5 * (step - 1.0)).min(2.0) } else { step };
     }
-    let count = 0.5 * poles.1 - phase / PI;
+    let count = 0.5 * poles - phase / PI;
     #[allow(clippy::cast_possible_truncation)]
     let count = count.round() as i64;
     count
