@@ -3,16 +3,22 @@
 //!
 //! **Numerics** Newton on the outputs of all controllers. The Jacobian follows from the gains of the network
 //! where only water is in the loops, otherwise from differences of settled states. An actuator behind a closed
-//! check valve has no gain, so that a start may fail where another one does not.
+//! check valve has no gain, so that a start may fail where another one does not. The first start is that of a
+//! network in which what is measured is prescribed and the actuators are free (`hydraulics/prescribed.rs`).
 
 use super::settle_temperatures;
-use crate::channels;
+use crate::channels::{self, Source};
 use crate::error::RunError;
 use crate::gains::{Gains, measured, reach};
 use crate::plan::Plan;
 use crate::simulation::Simulation;
 use anergy_control::controller::{Balance, Inputs};
+use anergy_core::ids::{EdgeId, NodeId};
+use anergy_network::elements::Element;
+use anergy_network::graph::{Prescription, Quantity};
+use anergy_network::hydraulics::HydraulicSolver;
 use anergy_network::hydraulics::linearize::Valves;
+use anergy_network::state::Prescribed;
 use nalgebra::{DMatrix, DVector};
 
 const MAX_ROUNDS: u32 = 60;
@@ -141,9 +147,20 @@ fn by_gains(simulation: &Simulation, outputs: &[Output], free: &[usize]) -> Opti
 
 /// Newton on the outputs of all controllers, within their limits.
 pub(super) fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
+    let outputs = outputs(simulation.plan());
+    let share = |o: &Output, share: f64| {
+        if o.min.is_finite() && o.max.is_finite() { o.min + share * (o.max - o.min) } else { 0.0 }
+    };
+    let known = prescribed(simulation, &outputs);
     let mut failure = None;
-    for share in STARTS {
-        match settle_from(simulation, share) {
+    for start in STARTS {
+        let at = |(o, known): (&Output, &Option<f64>)| match known {
+            Some(known) if start == STARTS[0] => known.clamp(o.min, o.max),
+            _ => share(o, start),
+        };
+        let values = outputs.iter().zip(&known).map(at);
+        let values = DVector::from_iterator(outputs.len(), values);
+        match settle_from(simulation, &outputs, values) {
             Err(error @ RunError::NotSettled { .. }) => failure = failure.or(Some(error)),
             done => return done,
         }
@@ -151,14 +168,49 @@ pub(super) fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunE
     failure.map_or(Ok(()), Err)
 }
 
-fn settle_from(simulation: &mut Simulation, share: f64) -> Result<(), RunError> {
+/// Positions of the actuators when what their controllers track is prescribed, as far as it can be.
+fn prescribed(simulation: &Simulation, outputs: &[Output]) -> Vec<Option<f64>> {
+    let (plan, state) = (&**simulation.plan(), simulation.state());
+    let mut network = plan.network.clone();
+    let mut water = state.network.clone();
+    let mut free = vec![None; outputs.len()];
+    for (i, output) in outputs.iter().enumerate() {
+        let planned = &plan.controllers[output.controller];
+        if !planned.controller.tracks() {
+            continue;
+        }
+        let edge = |e: usize| EdgeId::from_index(e);
+        let quantity = match measured(plan, planned.measures[0]) {
+            (Source::EdgeFlow(e), None) => Quantity::MassFlow(edge(e)),
+            (Source::StationFlow(i), None) => Quantity::MassFlow(plan.stations[i].edge),
+            (Source::EdgePressure(e), None) => Quantity::PressureDifference(edge(e)),
+            (Source::NodePressure(n), None) => Quantity::Pressure(NodeId::from_index(n)),
+            _ => continue,
+        };
+        let signal = planned.acts_on[output.output];
+        let mut driven = (0..plan.commands.len()).filter(|&e| plan.commands[e] == Some(signal));
+        let (Some(e), None) = (driven.next(), driven.next()) else { continue };
+        if matches!(plan.network.edges[e].element, Element::Pump(_)) {
+            network.prescriptions.push(Prescription { quantity, free: edge(e) });
+            let value = state.signals[planned.set_points.start];
+            water.prescribed.push(Prescribed { value, ..Prescribed::default() });
+            free[i] = Some(e);
+        }
+    }
+    water.invalidate_hydraulics();
+    let solved = HydraulicSolver::new(&network)
+        .and_then(|mut solver| solver.solve(&network, &mut water))
+        .is_ok();
+    free.into_iter().map(|edge| edge.filter(|_| solved).map(|edge| water.position[edge])).collect()
+}
+
+fn settle_from(
+    simulation: &mut Simulation,
+    outputs: &[Output],
+    mut values: DVector<f64>,
+) -> Result<(), RunError> {
     let plan = simulation.plan().clone();
-    let outputs = outputs(&plan);
     let n = outputs.len();
-    let start = |o: &Output| {
-        if o.min.is_finite() && o.max.is_finite() { o.min + share * (o.max - o.min) } else { 0.0 }
-    };
-    let mut values = DVector::from_iterator(n, outputs.iter().map(start));
     let name = |i: usize| &plan.controllers[outputs[i].controller].name;
     let without_effect = |i: usize| RunError::NotSettled {
         iterations: 1,
@@ -168,7 +220,7 @@ fn settle_from(simulation: &mut Simulation, share: f64) -> Result<(), RunError> 
         ),
     };
     for _ in 0..MAX_ROUNDS {
-        let missed = answer(simulation, &outputs, &values)?;
+        let missed = answer(simulation, outputs, &values)?;
         // At a limit, a miss that pushes beyond it stays.
         let held = |i: usize| {
             let (o, miss) = (&outputs[i], missed[i].miss);
@@ -178,9 +230,9 @@ fn settle_from(simulation: &mut Simulation, share: f64) -> Result<(), RunError> 
         if free.iter().all(|&i| missed[i].miss.abs() <= REACHED * missed[i].scale) {
             return Ok(());
         }
-        let jacobian = match by_gains(simulation, &outputs, &free) {
+        let jacobian = match by_gains(simulation, outputs, &free) {
             Some(jacobian) => jacobian,
-            None => by_differences(simulation, &outputs, &values, &missed, &free)?,
+            None => by_differences(simulation, outputs, &values, &missed, &free)?,
         };
         // An actuator beyond what its element can do, like a head that the pump does not reach at this
         // flow, has no effect here, but may have one elsewhere.
@@ -190,7 +242,7 @@ fn settle_from(simulation: &mut Simulation, share: f64) -> Result<(), RunError> 
             let Output { min, max, .. } = outputs[i];
             let mut other = values.clone();
             other[i] = if values[i] > min { min } else { max };
-            if !other[i].is_finite() || answer(simulation, &outputs, &other)? == missed {
+            if !other[i].is_finite() || answer(simulation, outputs, &other)? == missed {
                 return Err(without_effect(i));
             }
             values[i] = (values[i] + 0.3 * (max - min) * missed[i].miss.signum()).clamp(min, max);
