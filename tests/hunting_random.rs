@@ -11,6 +11,8 @@ use std::path::Path;
 
 /// Grids in a plain run.
 const GRIDS: u64 = 12;
+/// A swing this large has grown out of the push, kg/s.
+const LARGE_KG_S: f64 = 1e-3;
 /// Outside of this band around the limit analysis and simulation must agree.
 const BAND: f64 = 0.03;
 const AGREE: f64 = 0.99;
@@ -106,7 +108,8 @@ fn grid(seed: u64) -> Grid {
 
 impl Grid {
     fn model(&self, gain: f64, push: f64) -> Model {
-        let step_s = if self.interval_s > 0.0 { self.interval_s } else { 0.1 };
+        // Short enough that sensors see flows as they are between two samples.
+        let step_s = 0.1;
         let mut text = self.text.replace("STEP", &step_s.to_string());
         for (i, feeder) in self.feeders.iter().enumerate() {
             let Feeder { name, flow_kg_s, weight, integral_time_s } = feeder;
@@ -119,19 +122,23 @@ impl Grid {
                 self.interval_s
             );
         }
-        let flow = self.feeders[0].flow_kg_s;
-        let _ = write!(
-            text,
-            "[[schedule]]\nsignal = \"c0.set_point\"\ninterpolation = \"hold\"\n\
-             points = [[0, {flow}], [10, {}]]\n",
-            flow * (1.0 + push)
-        );
+        // Each feeder is pushed by another part of it: one mode or the other is met.
+        for (i, feeder) in self.feeders.iter().enumerate() {
+            let part = push * (1.0 + (2.4 * i as f64).sin());
+            let _ = write!(
+                text,
+                "[[schedule]]\nsignal = \"c{i}.set_point\"\ninterpolation = \"hold\"\n\
+                 points = [[0, {0}], [10, {1}]]\n",
+                feeder.flow_kg_s,
+                feeder.flow_kg_s * (1.0 + part)
+            );
+        }
         Model::from_toml(&text, Path::new(".")).unwrap()
     }
 
-    /// Whether a small push grows.
-    fn grows(&self, gain: f64, period_s: f64) -> bool {
-        let model = self.model(gain, 1e-5);
+    /// Whether a small push grows within a time that a mode of this growth takes to prevail.
+    fn grows(&self, gain: f64, period_s: f64, growth_per_s: f64) -> bool {
+        let model = self.model(gain, 1e-4);
         let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
         let flows: Vec<_> = self
             .feeders
@@ -141,7 +148,8 @@ impl Grid {
         let step = model.run.step.0;
         let half = ((0.5 * period_s / step.as_s()).round() as usize).max(1);
         let periods = |n: f64| (n * period_s / step.as_s()) as usize;
-        let (skip, window, pause) = (periods(8.0), periods(4.0), periods(60.0));
+        let longest = (12.0 / (growth_per_s.abs() * period_s)).clamp(60.0, 1000.0);
+        let (skip, window, pause) = (periods(8.0), periods(4.0), periods(longest));
         let mut series: Vec<Vec<f64>> = vec![Vec::new(); flows.len()];
         for _ in 0..skip + pause + 2 * window + half {
             let end = simulation.time() + step;
@@ -160,7 +168,9 @@ impl Grid {
             };
             series.iter().map(moved).fold(0.0, f64::max)
         };
-        size(skip + pause + window) > size(skip)
+        // What has reached its limit cycle grows no more.
+        let late = size(skip + pause + window);
+        late > size(skip) || late > LARGE_KG_S
     }
 }
 
@@ -199,15 +209,15 @@ fn analysis_and_simulation_agree_on_what_grows() {
         }
         judged += 1;
         let gain = limit * factor;
-        let stable = {
-            let mut simulation = Simulation::new(build(&grid.model(gain, 0.0)).unwrap()).unwrap();
-            hunting(&mut simulation).unwrap().controllers.iter().all(|c| c.stable)
-        };
+        let mut simulation = Simulation::new(build(&grid.model(gain, 0.0)).unwrap()).unwrap();
+        let found = hunting(&mut simulation).unwrap();
+        let stable = found.controllers.iter().all(|c| c.stable);
+        let growth_per_s = found.modes.first().map_or(f64::NAN, |mode| mode.growth_per_s);
         // A continuous controller is sampled at 0.1 s in the run: later by half of it.
-        let grows = grid.grows(gain, period_s);
+        let grows = grid.grows(gain, period_s, growth_per_s);
         if stable != (factor < 1.0) || grows == stable {
             disagree.push(format!(
-                "seed {seed}: {} feeders, gain {factor:.3} of the limit, interval {} s: {} by analysis, push {}",
+                "seed {seed}: {} feeders, gain {factor:.3} of the limit, interval {} s: {} by analysis ({growth_per_s:.5} 1/s, period {period_s:.1} s), push {}",
                 grid.feeders.len(),
                 grid.interval_s,
                 if stable { "stable" } else { "growing" },

@@ -29,6 +29,10 @@ const SCALE_STEP: f64 = 1.15;
 /// A scale beyond all gains, and how far down frequencies are looked for at which integrators prevail.
 const HUGE: f64 = 1e9;
 const MOST_DECADES: usize = 30;
+/// Factors between two frequencies of a count, anywhere and near a crossing: two modes that pass together in one
+/// step would turn the determinant once around, and be missed.
+const LONGEST_STEP: f64 = 1.12;
+const HOT_STEP: f64 = 1.005;
 
 /// A mode of the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,6 +66,8 @@ pub(super) struct Found {
 struct Case<'a> {
     loops: &'a Loops,
     lambdas: Option<Vec<C64>>,
+    /// Frequencies near which modes may cross, rad/s.
+    hot: Vec<f64>,
 }
 
 /// A scalar equation `1 + k f(s) = 0`.
@@ -77,7 +83,7 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         let scaled = DMatrix::from_fn(n, n, |i, j| k[i] * loops.gains[(i, j)]);
         scaled.complex_eigenvalues().iter().copied().collect()
     });
-    let case = Case { loops, lambdas };
+    let mut case = Case { loops, lambdas, hot: Vec::new() };
     let scalars = scalars(&case);
     let exact = case.lambdas.is_some();
     let omegas = frequencies(loops);
@@ -86,6 +92,7 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         starts.extend(crossing(scalar, &omegas).map(|limit| (limit, scalar)));
     }
     starts.sort_by(|a, b| a.0.factor.total_cmp(&b.0.factor));
+    let hot: Vec<f64> = starts.iter().map(|(limit, _)| limit.omega_rad_s).collect();
     if !exact {
         starts.truncate(REFINED);
     }
@@ -105,6 +112,10 @@ pub(super) fn analyse(loops: &Loops) -> Found {
             refined.into_iter().for_each(|s| keep(&mut roots, s, 1));
         }
     }
+    drop(scalars);
+    case.hot = hot;
+    case.hot.extend(limits.iter().map(|limit| limit.omega_rad_s));
+    case.hot.extend(roots.iter().map(|root| root.s.im));
     let growing = count_growing(&case, 1.0);
     if counted(&roots) < growing {
         for s in search(loops, &omegas) {
@@ -112,8 +123,8 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         }
     }
     roots.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
-    let limit = limits.into_iter().min_by(|a, b| a.factor.total_cmp(&b.factor));
-    let limit = if exact { limit } else { checked(&case, limit, &omegas) };
+    limits.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let limit = if exact { limits.first().copied() } else { checked(&case, &limits, &omegas) };
     Found { roots, limit, growing }
 }
 
@@ -293,17 +304,18 @@ fn refine_limit(loops: &Loops, start: Limit) -> Option<Limit> {
     None
 }
 
-/// The limit, if nothing grows below it and something above; otherwise that found by counting.
-fn checked(case: &Case, limit: Option<Limit>, omegas: &[f64]) -> Option<Limit> {
+/// The first limit below which nothing grows and above which something does; otherwise that found by counting.
+fn checked(case: &Case, limits: &[Limit], omegas: &[f64]) -> Option<Limit> {
     const MARGIN: f64 = 1e-3;
     let loops = case.loops;
-    if let Some(limit) = limit
-        && count_growing(case, limit.factor * (1.0 - MARGIN)) == 0
-        && count_growing(case, limit.factor * (1.0 + MARGIN)) > 0
-    {
-        return Some(limit);
+    let confirmed = |limit: &&Limit| {
+        count_growing(case, limit.factor * (1.0 - MARGIN)) == 0
+            && count_growing(case, limit.factor * (1.0 + MARGIN)) > 0
+    };
+    if let Some(limit) = limits.iter().find(confirmed) {
+        return Some(*limit);
     }
-    let (mut low, mut high) = (1e-6, limit.map_or(1e6, |limit| limit.factor * 2.0).max(1e6));
+    let (mut low, mut high) = (1e-6, 1e6);
     if count_growing(case, high) == 0 {
         return None;
     }
@@ -370,20 +382,24 @@ fn count_growing(case: &Case, factor: f64) -> i64 {
         low *= 0.1;
     }
     let high = case.loops.highest_rad_s();
+    let longest = |omega: f64| {
+        let near = case.hot.iter().any(|hot| (omega / hot - 1.0).abs() < 0.05);
+        if near { HOT_STEP } else { LONGEST_STEP }
+    };
     let mut phase = 0.0;
     let mut at = (low, determinant(case, factor, low));
-    let mut step = 1.3;
+    let mut step = LONGEST_STEP;
     while at.0 < high {
         let next = (at.0 * step).min(high);
         let value = determinant(case, factor, next);
         let turn = (value / at.1).arg();
-        if turn.abs() > 0.7 && step > 1.0005 {
-            step = 1.0 + 0.5 * (step - 1.0);
+        if turn.abs() > 0.7 && step > 1.0 + 1e-8 {
+            step = 1.0 + 0.3 * (step - 1.0);
             continue;
         }
         phase += turn;
         at = (next, value);
-        step = if turn.abs() < 0.3 { (1.0 + 1.5 * (step - 1.0)).min(2.0) } else { step };
+        step = if turn.abs() < 0.3 { 1.0 + 2.0 * (step - 1.0) } else { step }.min(longest(next));
     }
     let count = 0.5 * poles - phase / PI;
     #[allow(clippy::cast_possible_truncation)]

@@ -4,7 +4,7 @@
 //! **Numerics** Newton on the outputs of all controllers. The Jacobian follows from the gains of the network
 //! where only water is in the loops, otherwise from differences of settled states. An actuator behind a closed
 //! check valve has no gain, so that a start may fail where another one does not. The first start is that of a
-//! network in which what is measured is prescribed and the actuators are free (`hydraulics/prescribed.rs`).
+//! network in which pumps hold their own flow, and what else is tracked is prescribed for a free pump.
 
 use super::settle_temperatures;
 use crate::channels::{self, Source};
@@ -190,9 +190,18 @@ fn prescribed(simulation: &Simulation, outputs: &[Output]) -> Vec<Option<f64>> {
         let signal = planned.acts_on[output.output];
         let mut driven = (0..plan.commands.len()).filter(|&e| plan.commands[e] == Some(signal));
         let (Some(e), None) = (driven.next(), driven.next()) else { continue };
-        if matches!(plan.network.edges[e].element, Element::Pump(_)) {
+        let Element::Pump(pump) = &plan.network.edges[e].element else { continue };
+        let value = state.signals[planned.set_points.start];
+        // A pump that holds its own flow has a law of its own, which no solve fails on.
+        let flow = |e: usize| state.network.m_flow_kg_s[e];
+        if matches!(quantity, Quantity::MassFlow(of) if flow(of.index()) == flow(e))
+            && !pump.holds()
+        {
+            network.edges[e].element = Element::Pump(pump.holding_flow());
+            water.position[e] = value;
+            free[i] = Some(e);
+        } else {
             network.prescriptions.push(Prescription { quantity, free: edge(e) });
-            let value = state.signals[planned.set_points.start];
             water.prescribed.push(Prescribed { value, ..Prescribed::default() });
             free[i] = Some(e);
         }
@@ -201,7 +210,13 @@ fn prescribed(simulation: &Simulation, outputs: &[Output]) -> Vec<Option<f64>> {
     let solved = HydraulicSolver::new(&network)
         .and_then(|mut solver| solver.solve(&network, &mut water))
         .is_ok();
-    free.into_iter().map(|edge| edge.filter(|_| solved).map(|edge| water.position[edge])).collect()
+    let position = |edge: usize| match &network.edges[edge].element {
+        Element::Pump(pump) => {
+            pump.speed(water.m_flow_kg_s[edge], &water.edge_state(&network, edge))
+        }
+        _ => water.position[edge],
+    };
+    free.into_iter().map(|edge| edge.filter(|_| solved).map(position)).collect()
 }
 
 fn settle_from(
