@@ -61,6 +61,9 @@ enum Command {
         /// Also write the analysis as JSON ("-" for standard output)
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
+        /// Try remedies in runs and say which help
+        #[arg(long)]
+        advise: bool,
     },
     /// Find everything that is wrong with a model
     Check {
@@ -130,8 +133,8 @@ fn main() -> ExitCode {
             commands::run::run(&model, [until, step, record], out.as_deref())
         }
         Command::Solve { model, json } => commands::solve::solve(&model, json.as_deref()),
-        Command::Stability { model, json } => {
-            commands::stability::stability(&model, json.as_deref())
+        Command::Stability { model, json, advise } => {
+            commands::stability::stability(&model, json.as_deref(), advise)
         }
         Command::Check { model, expand, explain_defaults, signals } => {
             commands::check::check(&model, expand, explain_defaults, signals)

@@ -3,6 +3,7 @@
 //! The operating point is the steady state of the model; [`hunting`] takes the loops there apart, [`blocking`] the
 //! feeders.
 
+pub mod advise;
 pub mod blocking;
 mod chain;
 mod law;
@@ -24,6 +25,7 @@ use crate::steady::settle;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_network::hydraulics::linearize::Valves;
+use blocking::FeederMargin;
 use law::Law;
 use loops::{Loops, Seen};
 use modes::Found;
@@ -92,6 +94,8 @@ pub struct Hunting {
 /// Who blocks whom and which loops will hunt.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct Stability {
+    /// The feeders, in the order of the model.
+    pub feeders: Vec<FeederMargin>,
     /// Oscillating modes, the fastest growing first.
     pub modes: Vec<Mode>,
     /// The controllers, in the order of the model.
@@ -105,8 +109,9 @@ pub struct Stability {
 pub fn analyse(model: &Model) -> Result<Stability, RunError> {
     let mut simulation = Simulation::new(build(model)?)?;
     settle(&mut simulation)?;
+    let feeders = blocking::blocking(&simulation)?;
     let Hunting { modes, controllers } = hunting(&mut simulation)?;
-    Ok(Stability { modes, controllers })
+    Ok(Stability { feeders, modes, controllers })
 }
 
 /// A controller with its law, where its loop is closed.

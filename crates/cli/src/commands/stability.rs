@@ -4,12 +4,16 @@ use super::run::read_model;
 use crate::failure::Failure;
 use crate::output::line;
 use crate::tables::print_table;
+use anergy_core::units::l_min;
 use anergy_simulation::error::RunError;
+use anergy_simulation::model::Model;
+use anergy_simulation::stability::advise::{self, Advice, Outcome};
 use anergy_simulation::stability::{self, Stability};
+use serde_json::json;
 use std::path::Path;
 
 /// Analyses a model file.
-pub fn stability(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
+pub fn stability(path: &Path, json: Option<&Path>, advise: bool) -> Result<(), Failure> {
     let (text, model) = read_model(path)?;
     let found = stability::analyse(&model).map_err(|error| match error {
         RunError::Model(problems) => {
@@ -17,21 +21,87 @@ pub fn stability(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
         }
         other => Failure::Run(other),
     })?;
-    let table = || serde_json::to_string_pretty(&found).map_err(|e| Failure::File(e.to_string()));
+    let tried = advise.then(|| advise::advise(&model, &found)).transpose().map_err(Failure::Run)?;
+    let mut value = serde_json::to_value(&found).map_err(|e| Failure::File(e.to_string()))?;
+    if let Some((before, advice)) = &tried {
+        value["before"] = json!(before);
+        value["advice"] = json!(advice);
+    }
+    let table = || serde_json::to_string_pretty(&value).map_err(|e| Failure::File(e.to_string()));
+    let print = || {
+        print_feeders(&model, &found);
+        line!("");
+        print_loops(&found);
+        if let Some((before, advice)) = &tried {
+            print_advice(before, advice);
+        }
+    };
     match json {
         Some(json) if json == Path::new("-") => line!("{}", table()?),
         Some(json) => {
             std::fs::write(json, table()? + "\n")
                 .map_err(|error| Failure::file("cannot write", json, &error))?;
-            print(&found);
+            print();
         }
-        None => print(&found),
+        None => print(),
     }
     Ok(())
 }
 
-fn print(found: &Stability) {
-    print_loops(found);
+fn print_feeders(model: &Model, found: &Stability) {
+    if found.feeders.is_empty() {
+        line!("no feeders: no pump stands in series with a check valve");
+        return;
+    }
+    let density = model.medium.density_kg_m3;
+    let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+    let rows: Vec<Vec<String>> = found
+        .feeders
+        .iter()
+        .map(|f| {
+            let by = f.blocked_by.as_deref().map_or(String::new(), |by| format!(" by {by}"));
+            let verdict = match (f.blocked, f.held_back) {
+                (true, _) => format!("blocked{by}"),
+                (false, true) => format!("held back{by}"),
+                _ => "free".to_owned(),
+            };
+            vec![
+                f.id.clone(),
+                format!("{:.3}", l_min(f.m_flow_kg_s, density)),
+                format!("{:.3}", f.speed),
+                number(f.threshold_speed),
+                number(f.margin_speed),
+                verdict,
+            ]
+        })
+        .collect();
+    print_table(&["feeder", "flow l/min", "speed", "blocked below", "margin", "verdict"], &rows);
+}
+
+fn print_advice(before: &Outcome, advice: &[Advice]) {
+    let names = |set: &std::collections::BTreeSet<String>| {
+        if set.is_empty() {
+            "none".to_owned()
+        } else {
+            set.iter().cloned().collect::<Vec<_>>().join(", ")
+        }
+    };
+    line!("");
+    line!(
+        "a run with a push of 15 %: swinging {}; blocked {}",
+        names(&before.swinging),
+        names(&before.blocked)
+    );
+    if advice.is_empty() {
+        line!("nothing to advise");
+    }
+    for one in advice {
+        line!("");
+        line!("{}: {}", one.remedy.replace('_', " "), one.verdict);
+        for change in &one.changes {
+            line!("    {change}");
+        }
+    }
 }
 
 fn print_loops(found: &Stability) {
