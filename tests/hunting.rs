@@ -1,5 +1,6 @@
 //! SC-07: the limit of each loop and group without simulating, against the analytic limit and simulation.
 
+use anergy_control::controllers::ControllerParams;
 use anergy_core::clock::Time;
 use anergy_core::recorder::Event;
 use anergy_simulation::build::build;
@@ -239,4 +240,81 @@ fn a_longer_common_pipe_and_unequal_pumps_hunt_sooner() {
     assert!(events.iter().any(|e| e.kind == "hunting"), "{events:?}");
     let least = flows[1].iter().fold(f64::INFINITY, |least, flow| least.min(*flow));
     assert!(least < 0.01, "the smaller pump still delivers {least} l/min in its worst moment");
+}
+
+#[test]
+fn controllers_that_take_turns_are_analysed_over_their_common_period() {
+    let turns = |gain: f64, push: f64| {
+        let mut model = model(2, &[("[600, 0.055]", &format!("[10, {push}]"))]);
+        for (controller, offset_s) in model.controllers.iter_mut().zip([0.0, 0.3]) {
+            let ControllerParams::Pi(pi) = &mut controller.params else { panic!() };
+            (pi.gain, pi.interval_s, pi.offset_s) = (gain, 0.5, offset_s);
+        }
+        model
+    };
+    let found = analysis(&turns(1.8, 0.05));
+    let (flows, _) = run_flows(&turns(1.8, 0.050_000_1), 100.0, 200.0);
+    let difference: Vec<f64> = (0..flows[0].len()).map(|i| flows[0][i] - flows[1][i]).collect();
+    let (period_s, growth) = wave(&difference, 0.1);
+    let mode = &found.modes[0];
+    assert!((period_s / mode.period_s - 1.0).abs() < 5e-3, "{period_s} {}", mode.period_s);
+    assert!((growth - mode.growth_per_s).abs() < 2e-3, "{growth} {}", mode.growth_per_s);
+    // Taking turns is no remedy: at K = 0.04 it hunts as before.
+    let (flows, events) = run_flows(&turns(2.4, 0.055), 1200.0, 1800.0);
+    assert!(peak_to_peak(&flows[0]) > 4.0 && events.iter().any(|e| e.kind == "hunting"));
+    // All together, the period map is the transfer in z.
+    let together = model(2, &[("gain = 2.4", "gain = 1.8\ninterval_s = 0.5")]);
+    let limit = analysis(&together).controllers[0].critical_gain.unwrap();
+    let turning = found.controllers[0].critical_gain.unwrap();
+    assert!((turning / limit - 1.0).abs() < 0.05, "{turning} {limit}");
+}
+
+/// One feeder whose supply temperature is held behind 50 m of pipe without losses by the speed of its pump.
+fn supply_temperature(gain: f64, integral_time_s: f64, set_point_k: f64) -> Model {
+    let folder = workspace().join("examples/pump-hunting");
+    let text = std::fs::read_to_string(folder.join("n1.toml")).unwrap();
+    let (network, _) = text.split_at(text.find("[[sensor]]").unwrap());
+    let network = network
+        .replace("insulation_resistance_k_m_w = 3.78", "insulation_resistance_k_m_w = 1e5")
+        .replace("step = \"0.1s\"", "step = \"1s\"");
+    let text = format!(
+        "{network}\n[[unit]]\nsite = \"plant\"\nstation = \"feeder1\"\nkind = \"prescribed_source\"\n\
+         supply_degc = 65\nv_flow_l_min = 4\n[[unit]]\nsite = \"town\"\nkind = \"prescribed_source\"\n\
+         supply_degc = 40\nv_flow_l_min = 4\n[[sensor]]\nid = \"supply\"\n\
+         measures = \"plant-town.hot.t_b_k\"\ntime_constant_s = 5\n[[controller]]\nid = \"pi1\"\nkind = \"pi\"\n\
+         measures = \"supply.value\"\nacts_on = \"plant.feeder1.feed_in_pump.speed\"\nset_point = 333.15\n\
+         gain = -{gain}\nintegral_time_s = {integral_time_s}\noutput_min = 0.1\n[pressure_reference]\n\
+         node = \"town.cold\"\npressure_bar = 1.5\n[[schedule]]\nsignal = \"pi1.set_point\"\n\
+         points = [[0, 333.15], [100, {set_point_k}]]\ninterpolation = \"hold\"\n"
+    );
+    Model::from_toml(&text, &folder).unwrap()
+}
+
+#[test]
+fn a_supply_temperature_behind_a_pipe_has_the_limit_that_simulation_finds() {
+    let stable = |gain, integral_time_s| {
+        analysis(&supply_temperature(gain, integral_time_s, 333.15)).controllers[0].stable
+    };
+    assert!(!stable(0.05, 20.0) && stable(0.005, 200.0));
+    let predicted = analysis(&supply_temperature(0.02, 200.0, 333.15));
+    let critical = -predicted.controllers[0].critical_gain.unwrap();
+    let critical_period_s = predicted.controllers[0].critical_period_s.unwrap();
+    let run = |gain: f64| {
+        let model = supply_temperature(gain, 200.0, 333.20);
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        let channel = simulation.channel("supply.value").unwrap();
+        let step = model.run.step.0;
+        let mut series = Vec::new();
+        for _ in 0..30_000 {
+            simulation.advance_to(simulation.time() + step, step).unwrap();
+            series.push(simulation.get(channel) - 333.20);
+        }
+        series
+    };
+    let size = |series: &[f64], from: usize| peak_to_peak(&series[from..from + 4000]);
+    let (below, above) = (run(0.95 * critical), run(1.05 * critical));
+    assert!(size(&below, 25_000) < 0.7 * size(&below, 6000), "decays below {critical}");
+    assert!(size(&above, 25_000) > 1.4 * size(&above, 6000), "grows above {critical}");
+    let (period_s, _) = wave(&above[6000..16_000], 1.0);
+    assert!((period_s / critical_period_s - 1.0).abs() < 0.05, "{period_s} {critical_period_s}");
 }
