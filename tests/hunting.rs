@@ -6,7 +6,7 @@ use anergy_core::recorder::Event;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
-use anergy_simulation::stability::{Hunting, hunting};
+use anergy_simulation::stability::hunting::{Hunting, hunting};
 use anergy_tests::workspace;
 
 /// The example with N feeders, changed by replacing words.

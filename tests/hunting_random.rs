@@ -4,7 +4,7 @@
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
-use anergy_simulation::stability::hunting;
+use anergy_simulation::stability::hunting::hunting;
 use anergy_tests::Random;
 use std::fmt::Write;
 use std::path::Path;

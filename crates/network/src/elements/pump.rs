@@ -310,12 +310,6 @@ impl Pump {
         self.speed_max
     }
 
-    /// The same pump, holding a flow by its own choice of speed: its position is that flow, kg/s.
-    #[must_use]
-    pub fn holding_flow(&self) -> Self {
-        Self { mode: PumpMode::Flow, proportional: None, ..self.clone() }
-    }
-
     /// Whether the pump holds a value other than its speed.
     pub fn holds(&self) -> bool {
         self.mode != PumpMode::Speed

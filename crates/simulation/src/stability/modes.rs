@@ -8,10 +8,10 @@
 //! starts. **Validity** poles of the controllers at zero (integrators) or in the left half plane. **Sources**
 //! `skogestad2005` (generalised Nyquist criterion).
 
+use super::count::{Case, count_growing};
 use super::loops::Loops;
 use super::secant::secant;
 use nalgebra::{Complex, DMatrix, DVector};
-use std::f64::consts::PI;
 
 type C64 = Complex<f64>;
 
@@ -25,14 +25,6 @@ const SAME: f64 = 1e-6;
 const NO_PERIOD: f64 = 1e-3;
 /// Steps of the scale from the limit to the present gains, each by this factor at most.
 const SCALE_STEP: f64 = 1.15;
-
-/// A scale beyond all gains, and how far down frequencies are looked for at which integrators prevail.
-const HUGE: f64 = 1e9;
-const MOST_DECADES: usize = 30;
-/// Factors between two frequencies of a count, anywhere and near a crossing: two modes that pass together in one
-/// step would turn the determinant once around, and be missed.
-const LONGEST_STEP: f64 = 1.12;
-const HOT_STEP: f64 = 1.005;
 
 /// A mode of the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,14 +52,6 @@ pub(super) struct Found {
     pub limit: Option<Limit>,
     /// Growing modes by the argument principle (a pair counts twice).
     pub growing: i64,
-}
-
-/// The loops with the eigenvalues of their gains, where they are uniform.
-struct Case<'a> {
-    loops: &'a Loops,
-    lambdas: Option<Vec<C64>>,
-    /// Frequencies near which modes may cross, rad/s.
-    hot: Vec<f64>,
 }
 
 /// A scalar equation `1 + k f(s) = 0`.
@@ -349,60 +333,4 @@ fn search(loops: &Loops, omegas: &[f64]) -> Vec<C64> {
         s.re > -s.im.abs() && resolvent(loops, *s, 1.0, &probe).norm() < 1e-6
     };
     found.into_iter().filter(mode).collect()
-}
-
-/// `det(1 + k L(i omega))`.
-fn determinant(case: &Case, factor: f64, omega: f64) -> C64 {
-    let s = C64::new(0.0, omega);
-    match &case.lambdas {
-        Some(lambdas) => {
-            let common = case.loops.common(s) * factor;
-            lambdas.iter().map(|lambda| lambda * common + 1.0).product()
-        }
-        None => case.loops.closed(s, factor).determinant(),
-    }
-}
-
-/// Number of growing modes: turns of the determinant along the imaginary axis.
-///
-/// With p poles at zero (integrators) it is `p/2 - change of phase/pi`.
-fn count_growing(case: &Case, factor: f64) -> i64 {
-    let (_, slowest) = case.loops.times_s();
-    let mut low = 1e-4 / slowest;
-    let order = |factor: f64, omega: f64| {
-        let size = |omega| determinant(case, factor, omega).norm();
-        (size(0.1 * omega) / size(omega)).log10()
-    };
-    // With a huge scale every loop with an integrator shows its pole.
-    let poles = order(HUGE, low).round();
-    for _ in 0..MOST_DECADES {
-        if (order(factor, low) - poles).abs() < 0.02 {
-            break;
-        }
-        low *= 0.1;
-    }
-    let high = case.loops.highest_rad_s();
-    let longest = |omega: f64| {
-        let near = case.hot.iter().any(|hot| (omega / hot - 1.0).abs() < 0.05);
-        if near { HOT_STEP } else { LONGEST_STEP }
-    };
-    let mut phase = 0.0;
-    let mut at = (low, determinant(case, factor, low));
-    let mut step = LONGEST_STEP;
-    while at.0 < high {
-        let next = (at.0 * step).min(high);
-        let value = determinant(case, factor, next);
-        let turn = (value / at.1).arg();
-        if turn.abs() > 0.7 && step > 1.0 + 1e-8 {
-            step = 1.0 + 0.3 * (step - 1.0);
-            continue;
-        }
-        phase += turn;
-        at = (next, value);
-        step = if turn.abs() < 0.3 { 1.0 + 2.0 * (step - 1.0) } else { step }.min(longest(next));
-    }
-    let count = 0.5 * poles - phase / PI;
-    #[allow(clippy::cast_possible_truncation)]
-    let count = count.round() as i64;
-    count
 }

@@ -177,3 +177,11 @@ impl PumpParams {
         Ok(Some(Proportional { m_design_kg_s, zero_flow_share }))
     }
 }
+
+impl super::Pump {
+    /// The same pump, holding a flow by its own choice of speed: its position is that flow, kg/s.
+    #[must_use]
+    pub fn holding_flow(&self) -> Self {
+        Self { mode: PumpMode::Flow, proportional: None, ..self.clone() }
+    }
+}

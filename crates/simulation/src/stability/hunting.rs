@@ -1,0 +1,376 @@
+//! Which loops will hunt: modes of the closed loops of controllers, sensors, actuators and network, and the gains
+//! at which the first of them stops decaying.
+
+use super::law::Law;
+use super::loops::{Loops, Seen};
+use super::modes::Found;
+use super::periodic::{PeriodicLoops, Ticks};
+use super::response::{StepResponse, responses};
+use crate::channels::{self, Source};
+use crate::error::RunError;
+use crate::gains::{Gains, measured, reach};
+use crate::plan::{Plan, PlannedController};
+use crate::simulation::Simulation;
+use crate::state::State;
+use anergy_core::clock::Time;
+use anergy_core::ids::SignalId;
+use anergy_network::hydraulics::linearize::Valves;
+use nalgebra::DMatrix;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// Loops whose gains over each other are smaller than this, relative to their own, are apart.
+const COUPLED: f64 = 1e-9;
+
+/// A mode in which controllers and network swing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mode {
+    /// Period, s.
+    pub period_s: f64,
+    /// Growth of its amplitude, 1/s; negative decays.
+    pub growth_per_s: f64,
+    /// Damping ratio; negative grows.
+    pub damping: f64,
+    /// Share of each controller that takes part; all together 1.
+    pub participation: BTreeMap<String, f64>,
+    /// Phase of the output of each controller against the one that takes part most, degrees.
+    pub phase_deg: BTreeMap<String, f64>,
+    /// Modes that are equal to this one, itself included.
+    pub multiplicity: usize,
+}
+
+/// How far a controller is from the limit of its group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoopMargin {
+    /// Name of the controller.
+    pub id: String,
+    /// Its gain, actuator unit per SI unit of what it measures.
+    pub gain: f64,
+    /// Its gain when all gains of its group are scaled to the limit; `None` without a limit, or when its
+    /// loop is open.
+    pub critical_gain: Option<f64>,
+    /// Period at that limit, s.
+    pub critical_period_s: Option<f64>,
+    /// Its gain at the limit of its own loop, all other controllers of the group switched off.
+    pub critical_gain_alone: Option<f64>,
+    /// Controllers of its group: those that it acts on, and that act on it.
+    pub group: Vec<String>,
+    /// Gain with all other loops of the group open over that with them closed and perfect; near 1 a loop
+    /// hardly sees the others, negative it turns round when they close.
+    pub relative_gain: Option<f64>,
+    /// Whether no mode of its group grows.
+    pub stable: bool,
+    /// Why it is not judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<&'static str>,
+}
+
+/// What the loops of a model will do.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct Hunting {
+    /// Oscillating modes, the fastest growing first.
+    pub modes: Vec<Mode>,
+    /// The controllers, in the order of the model.
+    pub controllers: Vec<LoopMargin>,
+}
+
+/// A controller with its law, where its loop is closed.
+struct Closed {
+    controller: usize,
+    law: Law,
+}
+
+/// Analyses the loops of a simulation that rests in its steady state.
+///
+/// # Errors
+/// When the network cannot be linearised.
+pub fn hunting(simulation: &mut Simulation) -> Result<Hunting, RunError> {
+    let plan = simulation.plan().clone();
+    let plan = &*plan;
+    let state = simulation.state();
+    let mut hunting = Hunting::default();
+    let mut closed = Vec::new();
+    for (controller, planned) in plan.controllers.iter().enumerate() {
+        let law = Law::of(plan, state, planned, planned.interval.as_s());
+        let open = if law.held.iter().all(|held| *held) {
+            Some("its output is at a limit")
+        } else if law.is_idle() {
+            Some("its output does not follow what it measures")
+        } else {
+            None
+        };
+        hunting.controllers.push(LoopMargin {
+            id: planned.name.clone(),
+            gain: planned.controller.gain(),
+            critical_gain: None,
+            critical_period_s: None,
+            critical_gain_alone: None,
+            group: Vec::new(),
+            relative_gain: None,
+            stable: true,
+            open,
+        });
+        if open.is_none() {
+            closed.push(Closed { controller, law });
+        }
+    }
+    let answers = answers(simulation, &closed)?;
+    for group in groups(plan, &closed, &answers.gains) {
+        judge(plan, simulation.state(), &closed, &group, &answers, &mut hunting);
+    }
+    hunting.modes.sort_by(|a, b| b.growth_per_s.total_cmp(&a.growth_per_s));
+    Ok(hunting)
+}
+
+/// What measured values (rows) do after a change of an output.
+struct Answers {
+    /// Of the water, or what is left at last.
+    gains: DMatrix<f64>,
+    /// Where temperatures take part: value, output, response.
+    slow: Vec<(usize, usize, StepResponse)>,
+}
+
+/// Answers of the measured values to the outputs of closed loops.
+fn answers(simulation: &mut Simulation, closed: &[Closed]) -> Result<Answers, RunError> {
+    let plan = simulation.plan().clone();
+    let planned = || closed.iter().map(|c| &plan.controllers[c.controller]);
+    let sources: Vec<(Source, Option<Source>)> =
+        planned().flat_map(|c| &c.measures).map(|source| measured(&plan, *source)).collect();
+    let outputs: Vec<_> =
+        planned().flat_map(|c| c.acts_on.iter().copied().zip(c.limits.iter().copied())).collect();
+    let mut gains = DMatrix::zeros(sources.len(), outputs.len());
+    let mut open = Vec::new();
+    let state = simulation.state();
+    let mut network = Gains::new(&plan, state, Valves::Stay)
+        .map_err(|error| crate::simulation::named(&plan, state.time, &error))?;
+    let all: Vec<Source> =
+        sources.iter().flat_map(|(of, minus)| [*of, minus.unwrap_or(*of)]).collect();
+    for (j, (signal, _)) in outputs.iter().enumerate() {
+        let known = reach(&plan, state, *signal)
+            .map(|reach| network.column(&plan, state, &reach, &all))
+            .unwrap_or_else(|| vec![None; all.len()]);
+        for (i, (_, minus)) in sources.iter().enumerate() {
+            let less = if minus.is_some() { known[2 * i + 1] } else { Some(0.0) };
+            match known[2 * i].zip(less) {
+                Some((gain, less)) => gains[(i, j)] = gain - less,
+                None => open.push((i, j)),
+            }
+        }
+    }
+    let mut slow = Vec::new();
+    if !open.is_empty() {
+        let read = |simulation: &Simulation| -> Vec<f64> {
+            let value = |of| channels::value(simulation.plan(), simulation.state(), of);
+            sources.iter().map(|(of, minus)| value(*of) - minus.map_or(0.0, value)).collect()
+        };
+        let found = responses(simulation, &outputs, &read)?;
+        for (i, j) in open {
+            let response = found[j][i].clone();
+            gains[(i, j)] = response.settled();
+            if response.settled() != 0.0 || response.time_s() > 0.0 {
+                slow.push((i, j, response));
+            }
+        }
+    }
+    Ok(Answers { gains, slow })
+}
+
+fn inputs(planned: &PlannedController) -> usize {
+    planned.measures.len()
+}
+
+/// Places of each closed controller's measured values and outputs.
+fn places(plan: &Plan, closed: &[Closed]) -> Vec<(std::ops::Range<usize>, std::ops::Range<usize>)> {
+    let (mut seen, mut out) = (0, 0);
+    let mut places = Vec::new();
+    for c in closed {
+        let planned = &plan.controllers[c.controller];
+        let (n_in, n_out) = (inputs(planned), planned.acts_on.len());
+        places.push((seen..seen + n_in, out..out + n_out));
+        seen += n_in;
+        out += n_out;
+    }
+    places
+}
+
+/// Closed loops that act on each other.
+fn groups(plan: &Plan, closed: &[Closed], gains: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let places = places(plan, closed);
+    let strength = |i: usize, j: usize| {
+        let block = gains
+            .view((places[i].0.start, places[j].1.start), (places[i].0.len(), places[j].1.len()));
+        block.amax()
+    };
+    let coupled = |i: usize, j: usize| {
+        let both = strength(i, j) * strength(j, i);
+        both > COUPLED * strength(i, i) * strength(j, j)
+    };
+    let mut group_of: Vec<usize> = (0..closed.len()).collect();
+    for i in 0..closed.len() {
+        for j in 0..i {
+            let (a, b) = (group_of[i], group_of[j]);
+            if a != b && coupled(i, j) {
+                group_of.iter_mut().filter(|group| **group == a).for_each(|group| *group = b);
+            }
+        }
+    }
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (i, group) in group_of.into_iter().enumerate() {
+        groups.entry(group).or_default().push(i);
+    }
+    groups.into_values().collect()
+}
+
+/// A group of closed controllers with what it takes to analyse it.
+struct Group<'a> {
+    planned: Vec<&'a PlannedController>,
+    laws: Vec<Law>,
+    gains: DMatrix<f64>,
+    seen: Vec<Seen>,
+    lags_s: Vec<f64>,
+    slow: Vec<(usize, usize, StepResponse)>,
+}
+
+impl<'a> Group<'a> {
+    fn new(
+        plan: &'a Plan,
+        state: &State,
+        closed: &[Closed],
+        members: &[usize],
+        answers: &Answers,
+    ) -> Self {
+        let places = places(plan, closed);
+        let rows: Vec<usize> = members.iter().flat_map(|&i| places[i].0.clone()).collect();
+        let columns: Vec<usize> = members.iter().flat_map(|&i| places[i].1.clone()).collect();
+        let place = |all: &[usize], one: usize| all.iter().position(|i| *i == one);
+        let slow = answers.slow.iter().filter_map(|(i, j, response)| {
+            Some((place(&rows, *i)?, place(&columns, *j)?, response.clone()))
+        });
+        let planned: Vec<&PlannedController> =
+            members.iter().map(|&i| &plan.controllers[closed[i].controller]).collect();
+        let sensor = |source: &Source| match source {
+            Source::Sensor(i) => {
+                let sensor = &plan.sensors[*i].sensor;
+                Seen { lag_s: sensor.time_constant_s(), dead_s: sensor.dead_time_s() }
+            }
+            _ => Seen { lag_s: 0.0, dead_s: 0.0 },
+        };
+        let lag = |signal: &SignalId| reach(plan, state, *signal).map_or(0.0, |reach| reach.lag_s);
+        Self {
+            gains: DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+                answers.gains[(rows[i], columns[j])]
+            }),
+            slow: slow.collect(),
+            seen: planned.iter().flat_map(|c| &c.measures).map(sensor).collect(),
+            lags_s: planned.iter().flat_map(|c| &c.acts_on).map(lag).collect(),
+            laws: members.iter().map(|&i| closed[i].law.clone()).collect(),
+            planned,
+        }
+    }
+
+    /// The loops, where all controllers update together; the interval is 0 where they are continuous.
+    fn together(&self) -> Loops {
+        let interval = self.planned.iter().map(|c| c.interval).max().unwrap_or(Time::ZERO);
+        Loops::new(
+            self.laws.clone(),
+            self.gains.clone(),
+            &self.seen,
+            &self.lags_s,
+            interval.as_s(),
+            self.slow.clone(),
+        )
+    }
+
+    /// Whether they do.
+    fn is_together(&self) -> bool {
+        let timing = |c: &PlannedController| (c.interval, c.controller.timing().offset_s.to_bits());
+        self.planned.iter().all(|c| timing(c) == timing(self.planned[0]))
+    }
+
+    /// What the loops do; `None` where they are too many with different timing.
+    fn analyse(&self, plan: &Plan, state: &State) -> Option<Found> {
+        if self.is_together() {
+            return Some(super::modes::analyse(&self.together()));
+        }
+        if !self.slow.is_empty() {
+            return None;
+        }
+        // What is continuous updates at every step of a run.
+        let every = |c: &PlannedController| {
+            if c.interval > Time::ZERO { c.interval.0 } else { plan.step.0 }
+        };
+        let first = |c: &PlannedController| {
+            Time::from_s(c.controller.timing().offset_s).unwrap_or(Time::ZERO).0
+        };
+        let all = self.planned.iter().flat_map(|c| [every(c), first(c)]);
+        let tick = all.fold(0, super::periodic::gcd);
+        let of_step = |c: &&PlannedController| {
+            let interval_s = if c.interval > Time::ZERO { c.interval } else { plan.step }.as_s();
+            Law::of(plan, state, c, interval_s)
+        };
+        let loops = PeriodicLoops {
+            laws: self.planned.iter().map(of_step).collect(),
+            ticks: self
+                .planned
+                .iter()
+                .map(|c| Ticks { every: every(c) / tick, first: first(c) / tick })
+                .collect(),
+            gains: self.gains.clone(),
+            seen: self.seen.clone(),
+            actuator_lags_s: self.lags_s.clone(),
+            tick_s: Time(tick).as_s(),
+        };
+        loops.analyse()
+    }
+}
+
+/// Analyses one group.
+fn judge(
+    plan: &Plan,
+    state: &State,
+    closed: &[Closed],
+    group: &[usize],
+    answers: &Answers,
+    hunting: &mut Hunting,
+) {
+    let whole = Group::new(plan, state, closed, group, answers);
+    let Some(found) = whole.analyse(plan, state) else {
+        for &i in group {
+            hunting.controllers[closed[i].controller].open =
+                Some("its group updates at too many different times to be analysed");
+        }
+        return;
+    };
+    // With different timing, shapes are those of the loops as if they updated together.
+    let whole = whole.together();
+    let name = |i: usize| plan.controllers[closed[group[i]].controller].name.clone();
+    for root in &found.roots {
+        let (shares, phases) = whole.shape(root.s);
+        hunting.modes.push(Mode {
+            period_s: TAU / root.s.im,
+            growth_per_s: root.s.re,
+            damping: -root.s.re / root.s.norm(),
+            participation: shares.iter().enumerate().map(|(i, share)| (name(i), *share)).collect(),
+            phase_deg: phases
+                .iter()
+                .enumerate()
+                .map(|(k, phase)| (name(whole.owner[k]), phase.to_degrees()))
+                .collect(),
+            multiplicity: root.times,
+        });
+    }
+    let names: Vec<String> = (0..group.len()).map(name).collect();
+    let relative = whole.relative_gains();
+    for (i, &k) in group.iter().enumerate() {
+        let margin = &mut hunting.controllers[closed[k].controller];
+        margin.group.clone_from(&names);
+        margin.stable = found.growing == 0;
+        margin.critical_gain = found.limit.map(|limit| margin.gain * limit.factor);
+        margin.critical_period_s = found.limit.map(|limit| TAU / limit.omega_rad_s);
+        margin.relative_gain = relative.as_ref().map(|relative| relative[i]);
+        let alone = Group::new(plan, state, closed, &[k], answers).analyse(plan, state);
+        let limit = alone.and_then(|alone| alone.limit);
+        margin.critical_gain_alone = limit.map(|limit| margin.gain * limit.factor);
+    }
+}
