@@ -2,6 +2,7 @@
 //! them need: where things are, random numbers that are the same every time, random elements.
 
 pub mod pages;
+pub mod prosnet;
 pub mod samples;
 
 use std::path::{Path, PathBuf};

@@ -96,6 +96,12 @@ pub trait Controller {
     /// Smallest and largest value of an output, given those of its actuator.
     fn output_limits(&self, output: usize, actuator: (f64, f64)) -> (f64, f64);
 
+    /// Smallest and largest value of an output with these inputs, where a mode narrows them; equal where the
+    /// output is not in use.
+    fn limits_now(&self, output: usize, inputs: &Inputs) -> (f64, f64) {
+        self.output_limits(output, inputs.limits[output])
+    }
+
     /// Whether the outputs would stay: in a steady state every miss is zero, or its output at the limit
     /// that it pushes against.
     fn balance(&self, inputs: &Inputs, outputs: &[f64], balance: &mut [Balance]);

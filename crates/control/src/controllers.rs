@@ -2,9 +2,12 @@
 //! than one channel and one signal also has a line in [`ports`].
 
 pub mod cascade;
+pub mod feed_forward;
 pub mod hysteresis;
 pub mod pi;
 pub mod thermostatic_valve;
+pub mod two_step;
+pub mod weighted_pi;
 
 use crate::controller::{ControlError, Controller, Ports};
 
@@ -15,6 +18,9 @@ anergy_core::registry! {
         Cascade("cascade", cascade::Cascade, cascade::CascadeParams),
         ThermostaticValve("thermostatic_valve", thermostatic_valve::ThermostaticValve, thermostatic_valve::ThermostaticValveParams),
         Hysteresis("hysteresis", hysteresis::Hysteresis, hysteresis::HysteresisParams),
+        WeightedPi("weighted_pi", weighted_pi::WeightedPi, weighted_pi::WeightedPiParams),
+        TwoStep("two_step", two_step::TwoStep, two_step::TwoStepParams),
+        FeedForward("feed_forward", feed_forward::FeedForward, feed_forward::FeedForwardParams),
     }
 }
 
@@ -22,6 +28,8 @@ anergy_core::registry! {
 pub fn ports(kind: &str) -> Ports {
     match kind {
         "cascade" => cascade::PORTS,
+        "two_step" => two_step::PORTS,
+        "weighted_pi" => weighted_pi::PORTS,
         _ => Ports::SINGLE,
     }
 }

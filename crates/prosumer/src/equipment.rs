@@ -2,6 +2,7 @@
 
 pub mod heat_load;
 pub mod heat_source;
+pub mod ideal_house;
 pub mod prescribed_source;
 
 use crate::thermal_unit::{ThermalUnit, UnitError};
@@ -13,6 +14,7 @@ anergy_core::registry! {
         PrescribedSource("prescribed_source", prescribed_source::PrescribedSource, prescribed_source::PrescribedSourceParams),
         HeatLoad("heat_load", heat_load::HeatLoad, heat_load::HeatLoadParams),
         HeatSource("heat_source", heat_source::HeatSource, heat_source::HeatSourceParams),
+        IdealHouse("ideal_house", ideal_house::IdealHouse, ideal_house::IdealHouseParams),
     }
 }
 

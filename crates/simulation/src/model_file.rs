@@ -168,6 +168,10 @@ pub struct StationEntry {
     /// The extraction valve: fields of a valve.
     #[serde(default, skip_serializing_if = "is_null")]
     pub extraction_valve: serde_json::Value,
+    /// A check valve behind the extraction valve, which lets water out of the exchanger only: fields of a
+    /// check_valve. Absent: none.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub extraction_check_valve: serde_json::Value,
 }
 
 fn is_null(value: &serde_json::Value) -> bool {

@@ -10,6 +10,7 @@
 //!                                                                                           |
 //! cold --------------------------------------stub_cold------------------------------ branch_cold
 //! ```
+//! An `extraction_check_valve` stands between the extraction valve and `branch_cold` where it is asked for.
 //! `stub_hot`, `heat_exchanger`, `feed_in_pump` and `feed_in_check_valve` have port a towards the cold
 //! side (positive flow is feed-in), `extraction_valve` and `stub_cold` towards the hot side.
 
@@ -93,6 +94,7 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("feed_in_pump", "{ speed = 1.0 }"),
     ("feed_in_check_valve", "{ kvs_m3_h = 11 }"),
     ("extraction_valve", "{ opening = 0.5 }"),
+    ("extraction_check_valve", "{ kvs_m3_h = 11 }"),
     ("circulation_pump", "{ head_max_bar = 5, free_flow_m3_h = 60 }"),
     ("generator", "{ dp_nominal_bar = 0.2, m_flow_nominal_kg_s = 10 }"),
 ];
@@ -103,7 +105,7 @@ pub(super) fn part_kind(part: &str) -> Option<&'static str> {
         "stub" => Some("pipe"),
         "heat_exchanger" => Some("heat_exchanger"),
         "feed_in_pump" => Some("pump"),
-        "feed_in_check_valve" => Some("check_valve"),
+        "feed_in_check_valve" | "extraction_check_valve" => Some("check_valve"),
         "extraction_valve" => Some("valve"),
         "circulation_pump" => Some("pump"),
         "generator" => Some("resistance"),
@@ -114,9 +116,14 @@ pub(super) fn part_kind(part: &str) -> Option<&'static str> {
 /// The parts of a kind of station.
 pub(super) fn parts_of(kind: StationKind) -> &'static [&'static str] {
     match kind {
-        StationKind::Bidirectional => {
-            &["stub", "heat_exchanger", "feed_in_pump", "feed_in_check_valve", "extraction_valve"]
-        }
+        StationKind::Bidirectional => &[
+            "stub",
+            "heat_exchanger",
+            "feed_in_pump",
+            "feed_in_check_valve",
+            "extraction_valve",
+            "extraction_check_valve",
+        ],
         StationKind::Consumer => &["stub", "heat_exchanger", "extraction_valve"],
         StationKind::Producer => &["stub", "heat_exchanger", "feed_in_pump", "feed_in_check_valve"],
         StationKind::PrescribedFlow => &[],
@@ -219,13 +226,25 @@ pub(super) fn station(
                 let start = if feeds_in { 0.0 } else { 1.0 };
                 defaults[if by_kappa { "kappa" } else { "opening" }] = json!(start);
             }
+            let checked = tree.get("extraction_check_valve").is_some();
+            let behind = if checked { "valve_outlet" } else { "branch_cold" };
             parts.push(Part {
                 name: "extraction_valve",
                 kind: "valve",
                 fields: "extraction_valve",
-                ends: (inner("exchanger_cold"), inner("branch_cold")),
+                ends: (inner("exchanger_cold"), inner(behind)),
                 defaults,
             });
+            if checked {
+                inner_nodes.push(behind);
+                parts.push(Part {
+                    name: "extraction_check_valve",
+                    kind: "check_valve",
+                    fields: "extraction_check_valve",
+                    ends: (inner(behind), inner("branch_cold")),
+                    defaults: json!({ "kvs_m3_h": 11.0, "leakage": 1e-3 }),
+                });
+            }
         }
         parts.push(Part {
             name: "stub_cold",

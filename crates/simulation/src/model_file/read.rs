@@ -2,6 +2,7 @@
 
 mod components;
 mod composites;
+mod controllers;
 mod drivers;
 mod effects;
 mod fluids;
@@ -160,6 +161,8 @@ struct Later {
 struct Stations {
     /// Edge of the interface, by `site.name`.
     edges: HashMap<String, String>,
+    /// Hot and cold node of the sites of stations with parts, by `site.name`.
+    lines: HashMap<String, (String, String)>,
     /// Hot and cold node of the sites of consumers, by `site.name`.
     consumers: Vec<(String, (String, String))>,
     /// Those that are there, but wrong and reported.
@@ -226,13 +229,15 @@ impl ModelReader<'_> {
                 interfaces.push(InterfaceSpec::new(entry, place(&what, &tree, &table)));
             }
         }
+        let units = self.units(&stations);
+        let controllers = self.controllers(&stations, &units);
         let model = Model {
             text: text.into(),
             tables: self.tables.clone(),
-            units: self.units(&stations),
+            units,
             interfaces,
             sensors: self.sensors(),
-            controllers: self.controllers(),
+            controllers,
             worst_points: self.worst_points(),
             prescriptions: self.prescriptions(),
             drivers: self.drivers(start),

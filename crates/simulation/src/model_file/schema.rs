@@ -169,7 +169,13 @@ fn controllers() -> Value {
             vec![("id", text("Name; default that of the first signal, with .controller"))];
         own.extend(ports.measures.iter().map(|field| (*field, text("Channel it measures"))));
         own.extend(ports.acts_on.iter().map(|field| (*field, text("Signal it drives"))));
-        let required: Vec<&str> = ports.measures.iter().chain(ports.acts_on).copied().collect();
+        let mut required: Vec<&str> = ports.measures.iter().chain(ports.acts_on).copied().collect();
+        if required.iter().any(|field| field.starts_with("measures_")) {
+            let meaning =
+                "Station whose channels and signals it takes where they are not named one by one";
+            own.push(("station", text(meaning)));
+            required.clear();
+        }
         let schema = |_: &str| ControllerParams::schema(kind);
         let mut one = kinds("kind", &[kind], schema, &own, &required);
         one["oneOf"].take().as_array_mut().and_then(Vec::pop)

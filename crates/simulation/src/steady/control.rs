@@ -4,13 +4,13 @@
 //! **Numerics** Newton on the outputs of all controllers. The Jacobian follows from the gains of the network
 //! where only water is in the loops, otherwise from differences of settled states. An actuator behind a closed
 //! check valve has no gain, so that a start may fail where another one does not. The first start is that of a
-//! network in which pumps hold their own flow, and what else is tracked is prescribed for a free pump.
+//! network in which pumps hold their own flow, and what else is tracked is prescribed for a free pump. A step is at most a
+//! share of each output's range, which halves where the balances became worse.
 
 use super::settle_temperatures;
 use crate::channels::{self, Source};
 use crate::error::RunError;
 use crate::gains::{Gains, measured, reach};
-use crate::plan::Plan;
 use crate::simulation::Simulation;
 use anergy_control::controller::{Balance, Inputs};
 use anergy_core::ids::{EdgeId, NodeId};
@@ -22,6 +22,8 @@ use anergy_network::state::Prescribed;
 use nalgebra::{DMatrix, DVector};
 
 const MAX_ROUNDS: u32 = 60;
+/// Largest step of an output, relative to its range, and how small that becomes.
+const LARGEST_STEP: (f64, f64) = (0.3, 0.01);
 /// Actuator change for the difference quotient, relative to its range where that is finite.
 const DIFFERENCE: f64 = 1e-5;
 /// A balance is reached within this share of its scale.
@@ -39,11 +41,13 @@ struct Output {
     max: f64,
 }
 
-fn outputs(plan: &Plan) -> Vec<Output> {
-    let mut all = Vec::new();
+fn outputs(simulation: &Simulation) -> Vec<Output> {
+    let (plan, state) = (simulation.plan(), simulation.state());
+    let (mut all, mut measured) = (Vec::new(), Vec::new());
     for (controller, planned) in plan.controllers.iter().enumerate() {
-        for (output, limits) in planned.limits.iter().enumerate() {
-            let (min, max) = planned.controller.output_limits(output, *limits);
+        let inputs = planned.inputs(plan, state, &mut measured);
+        for output in 0..planned.acts_on.len() {
+            let (min, max) = planned.controller.limits_now(output, &inputs);
             all.push(Output { controller, output, min, max });
         }
     }
@@ -147,7 +151,7 @@ fn by_gains(simulation: &Simulation, outputs: &[Output], free: &[usize]) -> Opti
 
 /// Newton on the outputs of all controllers, within their limits.
 pub(super) fn settle_controllers(simulation: &mut Simulation) -> Result<(), RunError> {
-    let outputs = outputs(simulation.plan());
+    let outputs = outputs(simulation);
     let share = |o: &Output, share: f64| {
         if o.min.is_finite() && o.max.is_finite() { o.min + share * (o.max - o.min) } else { 0.0 }
     };
@@ -234,17 +238,25 @@ fn settle_from(
             name(i)
         ),
     };
+    let (mut most, mut last) = (LARGEST_STEP.0, f64::INFINITY);
     for _ in 0..MAX_ROUNDS {
         let missed = answer(simulation, outputs, &values)?;
         // At a limit, a miss that pushes beyond it stays.
         let held = |i: usize| {
             let (o, miss) = (&outputs[i], missed[i].miss);
-            (values[i] >= o.max && miss > 0.0) || (values[i] <= o.min && miss < 0.0)
+            o.min >= o.max
+                || (values[i] >= o.max && miss > 0.0)
+                || (values[i] <= o.min && miss < 0.0)
         };
         let free: Vec<usize> = (0..n).filter(|&i| !held(i)).collect();
         if free.iter().all(|&i| missed[i].miss.abs() <= REACHED * missed[i].scale) {
             return Ok(());
         }
+        let worst =
+            free.iter().map(|&i| missed[i].miss.abs() / missed[i].scale).fold(0.0, f64::max);
+        most = if worst > last { most / 2.0 } else { most * 2.0 }
+            .clamp(LARGEST_STEP.1, LARGEST_STEP.0);
+        last = worst;
         let jacobian = match by_gains(simulation, outputs, &free) {
             Some(jacobian) => jacobian,
             None => by_differences(simulation, outputs, &values, &missed, &free)?,
@@ -260,7 +272,8 @@ fn settle_from(
             if !other[i].is_finite() || answer(simulation, outputs, &other)? == missed {
                 return Err(without_effect(i));
             }
-            values[i] = (values[i] + 0.3 * (max - min) * missed[i].miss.signum()).clamp(min, max);
+            values[i] = (values[i] + LARGEST_STEP.0 * (max - min) * missed[i].miss.signum())
+                .clamp(min, max);
             continue;
         }
         let rhs = DVector::from_iterator(free.len(), free.iter().map(|&i| -missed[i].miss));
@@ -270,7 +283,7 @@ fn settle_from(
         for (k, &i) in free.iter().enumerate() {
             let Output { min, max, .. } = outputs[i];
             let range = if (max - min).is_finite() { max - min } else { f64::INFINITY };
-            values[i] = (values[i] + change[k].clamp(-0.3 * range, 0.3 * range)).clamp(min, max);
+            values[i] = (values[i] + change[k].clamp(-most * range, most * range)).clamp(min, max);
         }
     }
     let missed = misses(simulation);

@@ -1,15 +1,14 @@
-//! Nodes, edges, units and controllers: dispatched on their `kind`.
+//! Nodes, edges and units: dispatched on their `kind`.
 
 use super::pipe_types;
 use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Key, Scalar, Tree, TreeKind};
 use crate::grammar::{Registered, Spelling};
-use crate::model::{ControllerSpec, EdgeSpec, NodeSpec, Place, UnitSpec, WrittenField};
+use crate::model::{EdgeSpec, NodeSpec, Place, UnitSpec, WrittenField};
 use crate::model_file::expand::Plain;
 use crate::model_file::{NodeEntry, NodeEntryKind};
 use crate::wording::refused;
-use anergy_control::controllers::{ControllerParams, ports};
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
@@ -216,30 +215,6 @@ impl ModelReader<'_> {
         Some(UnitSpec { id: id.into(), port: port.into(), params, place })
     }
 
-    pub(super) fn controllers(&mut self) -> Vec<ControllerSpec> {
-        let items = self.items("controller");
-        items.into_iter().filter_map(|tree| self.controller(tree)).collect()
-    }
-
-    fn controller(&mut self, tree: Tree) -> Option<ControllerSpec> {
-        let mut words = Words::new("controller", tree);
-        let driven = ["acts_on", "id"].iter().find_map(|field| words.tree.text(field));
-        words.what = format!("controller \"{}\"", driven.unwrap_or("?"));
-        let kind = self.kind::<ControllerParams>(&mut words)?;
-        let ports = ports(&kind);
-        let mut names = |fields: &[&'static str]| -> Vec<Option<String>> {
-            fields.iter().map(|field| self.required_text(&mut words, field)).collect()
-        };
-        let (measures, acts_on) = (names(ports.measures), names(ports.acts_on));
-        let id = self.optional_text(&mut words, "id");
-        let first = acts_on.iter().flatten().next().map_or("?", String::as_str);
-        let id = id.unwrap_or_else(|| format!("{first}.controller"));
-        words.what = format!("controller \"{id}\" ({kind})");
-        let (params, place) = self.parameters(words, &kind)?;
-        let all = |names: Vec<Option<String>>| names.into_iter().collect::<Option<Vec<String>>>();
-        Some(ControllerSpec { id, measures: all(measures)?, acts_on: all(acts_on)?, params, place })
-    }
-
     /// What remains of an entry, as the parameters of its kind.
     pub(super) fn parameters<P: Registered>(
         &mut self,
@@ -253,7 +228,7 @@ impl ModelReader<'_> {
         Some((params, place(&what, &tree, &table)))
     }
 
-    fn kind<P: Registered>(&mut self, words: &mut Words) -> Option<String> {
+    pub(super) fn kind<P: Registered>(&mut self, words: &mut Words) -> Option<String> {
         self.word_of::<P>(words, "kind")
     }
 

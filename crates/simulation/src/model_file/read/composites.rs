@@ -189,10 +189,12 @@ impl ModelReader<'_> {
         if stations.add(self, &interface, &what, tree).is_none() {
             return Some(());
         }
+        let line = |i: usize| format!("{}.{}", site.id, site.lines[i]);
+        let lines = (line(0), line(1));
         if matches!(entry.kind, StationKind::Consumer | StationKind::PrescribedFlow) {
-            let line = |i: usize| format!("{}.{}", site.id, site.lines[i]);
-            stations.consumers.push((interface.id.clone(), (line(0), line(1))));
+            stations.consumers.push((interface.id.clone(), lines.clone()));
         }
+        stations.lines.insert(interface.id.clone(), lines);
         self.add_nodes(nodes);
         self.add_edges(edges);
         interfaces.push(InterfaceSpec::new(interface, place));
