@@ -3,6 +3,7 @@
 
 use super::Builder;
 use super::signals::{Writer, temperature_signal};
+use crate::document::Span;
 use crate::model::{EdgeSpec, Place};
 use crate::plan::SeasonalGround;
 use crate::temperatures::SURROUNDINGS;
@@ -169,7 +170,7 @@ impl Builder<'_> {
             at_depths.push((signal, depth_m));
         }
         for (signal, _) in &at_depths {
-            let (what, span) = ("the seasons of [ground]".to_owned(), None);
+            let (what, span) = ("the seasons of [ground]".into(), Span::NONE);
             writers.insert(*signal, Writer { what, span });
         }
         (ground, by_depth, Some(SeasonalGround { seasons, start_s, at_depths }))

@@ -2,6 +2,7 @@
 
 use super::Builder;
 use crate::diagnostic::did_you_mean;
+use crate::document::Span;
 use crate::drivers::Driver;
 use crate::model::Place;
 use crate::model_file::NodeEntryKind;
@@ -14,14 +15,15 @@ use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_core::units::Unit;
 use anergy_network::elements::Element;
 use anergy_network::graph::Network;
+use smol_str::{SmolStr, format_smolstr};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Who writes a signal.
 pub(super) struct Writer {
-    pub what: String,
-    pub span: Option<Range<usize>>,
+    pub what: SmolStr,
+    pub span: Span,
 }
 
 impl Builder<'_> {
@@ -105,8 +107,8 @@ impl Builder<'_> {
                 .filter(|edge| matches!(edge.element, Element::FlowSource(_)))
                 .and_then(|_| commands[edge]);
             if let Some(command) = imposes_flow {
-                let what = format!("unit \"{}\"", spec.id);
-                writers.insert(command, Writer { what, span: spec.place.span.range() });
+                let what = format_smolstr!("unit \"{}\"", spec.id);
+                writers.insert(command, Writer { what, span: spec.place.span });
             }
             let states = equipment.initial_state(self.model.run.initial_k).len();
             let outputs = equipment.outputs().len();
@@ -201,11 +203,16 @@ impl Builder<'_> {
         what: &str,
         span: Option<Range<usize>>,
     ) {
-        let writer = Writer { what: what.to_owned(), span: span.clone() };
+        let at = span.clone().map_or(Span::NONE, Span::from);
+        let writer = Writer { what: what.into(), span: at };
         if let Some(before) = writers.insert(signal, writer) {
             let name = &signals.spec(signal).name;
             let message = format!("signal \"{name}\" is driven by {} and by {what}", before.what);
-            self.report(message, span.or(before.span), Some("a signal has one driver".into()));
+            self.report(
+                message,
+                span.or(before.span.range()),
+                Some("a signal has one driver".into()),
+            );
         }
     }
 

@@ -100,17 +100,26 @@ impl TableReader<'_> {
                 return self.problems.push(refused(message).with_hint(hint));
             }
         };
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(separator)
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .flexible(true)
-            .has_headers(false)
-            .from_reader(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes));
-        let mut records = Vec::new();
-        for record in reader.records() {
+        let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+        let reader = || {
+            csv::ReaderBuilder::new()
+                .delimiter(separator)
+                .comment(Some(b'#'))
+                .trim(csv::Trim::All)
+                .flexible(true)
+                .has_headers(false)
+                .from_reader(text)
+        };
+        // Twice: first the lines, which all places count on, then row by row.
+        let (mut header, mut lines) = (csv::StringRecord::new(), Vec::new());
+        for record in reader().records() {
             match record {
-                Ok(record) => records.push(record),
+                Ok(record) => {
+                    lines.push(record.position().map_or(0, csv::Position::line));
+                    if lines.len() == 1 {
+                        header = record;
+                    }
+                }
                 Err(error) => {
                     let hint = "the file must be a table of text in UTF-8";
                     let problem = refused(format!("network: {file}: {error}")).with_hint(hint);
@@ -118,19 +127,17 @@ impl TableReader<'_> {
                 }
             }
         }
-        let [header, rest @ ..] = records.as_slice() else {
+        if lines.is_empty() {
             let hint =
                 "the first line names the columns, for example ".to_owned() + example(content);
             return self
                 .problems
                 .push(refused(format!("network: {file} is empty")).with_hint(hint));
-        };
-        if rest.is_empty() {
+        }
+        if lines.len() == 1 {
             self.problems.push(refused(format!("network: {file} has no rows below its header")));
         }
         let names: Vec<String> = header.iter().map(str::to_owned).collect();
-        let line = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
-        let lines = records.iter().map(line).collect();
         let table = self.tables.add(self.text_end, file, names.clone(), lines, named.span.range());
         let before = self.problems.len();
         let columns = self.columns(content, &names, &table);
@@ -138,8 +145,9 @@ impl TableReader<'_> {
             // Without its columns a table says nothing: every row would be reported.
             return;
         }
-        for (i, record) in rest.iter().enumerate() {
-            let row = i + 1;
+        for (row, record) in reader().records().enumerate().skip(1) {
+            // It was read before.
+            let Ok(record) = &record else { return };
             if record.len() != names.len() {
                 let message = format!("{} values for {} columns", record.len(), names.len());
                 let hint = format!(
@@ -263,6 +271,7 @@ impl TableReader<'_> {
         let key = |name: &str| Key { name: name.into(), span: spanned };
         let table = |entries| Tree { span: spanned, kind: TreeKind::Table(entries) };
         site.push((key("lines"), Tree::from_json(&json!(self.entry.lines), spanned)));
+        site.shrink_to_fit();
         rows.entry("site").or_default().push(table(site));
         let with_station = station.iter().any(|(key, _)| key.name == "type");
         let given = station.iter().find(|(key, _)| !["type", "site"].contains(&key.name.as_str()));
@@ -270,6 +279,7 @@ impl TableReader<'_> {
         let alone = alone.or_else(|| parts.first().map(|(_, cells)| cells[0].1.span.range()));
         station.extend(parts.into_iter().map(|(name, cells)| (key(&name), table(cells))));
         if with_station {
+            station.shrink_to_fit();
             rows.entry("station").or_default().push(table(station));
         } else if let Some(span) = alone {
             let problem = Diagnostic::new("this belongs to a station, and the row has none", span);
