@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python validate peers bench bench-thermal bench-peers instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python validate peers bench bench-thermal bench-memory bench-peers instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -67,6 +67,14 @@ bench-thermal: ## Times of whole runs with heat: DESTEST 256 days, 1 000 consume
 	target/release/thermal destest $${ANERGY_REFERENCE_DATA:-../shared/data}/destest/definition
 	target/release/thermal year 1000
 	target/release/thermal steps 100 300 1000 3000 10000
+
+bench-memory: ## Memory of a network of 100 000 edges by phase, of anergy solve, of a state
+	cargo build --release -p anergy -p anergy-benches --bin anergy --bin memory
+	target/release/memory tables 32500 target/network-of-100000-edges
+	target/release/memory folder target/network-of-100000-edges
+	target/release/memory text 32500
+	target/release/memory state 1000
+	/usr/bin/time -v target/release/anergy solve target/network-of-100000-edges/model.toml 2>&1 | tail -24 | grep Maximum
 
 bench-peers: .venv-peers/.installed ## Hydraulics beside EPANET and pandapipes
 	cargo build --release -p anergy -p anergy-benches --bins
