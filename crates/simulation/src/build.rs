@@ -17,7 +17,7 @@ use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
 use crate::model_file::InitialState;
-use crate::plan::{EdgeOnMap, NodeOnMap, Plan, PlannedUnit};
+use crate::plan::{self, EdgeOnMap, Ends, NodeOnMap, Plan, PlannedUnit};
 use crate::simulation::{SwingState, watches};
 use crate::state::{Reading, State};
 use crate::wording::refused;
@@ -205,6 +205,8 @@ impl Builder<'_> {
             vessels,
             meters,
             pipes: pipes(&network),
+            pumps: plan::pumps(&network),
+            ends: Ends::of(&network),
             pulses,
             pulse_of,
             pressure_watches,

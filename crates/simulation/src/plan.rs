@@ -186,6 +186,36 @@ impl InitialWater {
     }
 }
 
+/// What the balances of every step need of an edge: a twentieth of what the network knows of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ends {
+    pub from: u32,
+    pub to: u32,
+    /// Whether it drives the flow, and does not take its work.
+    pub drives: bool,
+}
+
+impl Ends {
+    /// Those of all edges.
+    pub(crate) fn of(network: &Network) -> Vec<Self> {
+        let ends = network.edges.iter().map(|edge| Self {
+            from: edge.from.index() as u32,
+            to: edge.to.index() as u32,
+            drives: matches!(
+                edge.element,
+                Element::Pump(_) | Element::FlowSource(_) | Element::PressureSource(_)
+            ),
+        });
+        ends.collect()
+    }
+}
+
+/// The edges that are pumps: what takes electricity.
+pub(crate) fn pumps(network: &Network) -> Vec<usize> {
+    let edges = network.edges.iter().enumerate();
+    edges.filter(|(_, edge)| matches!(edge.element, Element::Pump(_))).map(|(i, _)| i).collect()
+}
+
 /// What only maps say of a node.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeOnMap {
@@ -224,6 +254,9 @@ pub struct Plan {
     pub(crate) meters: Vec<PlannedMeter>,
     /// Edges that are pipes.
     pub(crate) pipes: Vec<usize>,
+    /// Edges that are pumps.
+    pub(crate) pumps: Vec<usize>,
+    pub(crate) ends: Vec<Ends>,
     pub(crate) pulses: Vec<Pulse>,
     /// Pulse of each edge that has one.
     pub(crate) pulse_of: Vec<Option<usize>>,
@@ -275,7 +308,7 @@ impl Plan {
     }
 
     pub(crate) fn total_electric_w(&self, state: &NetworkState) -> f64 {
-        (0..self.network.edges.len()).map(|edge| self.electric_w(state, edge)).sum()
+        self.pumps.iter().fold(0.0, |sum, pump| sum + self.electric_w(state, *pump))
     }
 
     pub(crate) fn total_units_w(&self, state: &NetworkState) -> f64 {
@@ -285,8 +318,7 @@ impl Plan {
 
     /// Heat from the losses of pumps, W: a unit never stands on a pump.
     pub(crate) fn total_pump_heat_w(&self, state: &NetworkState) -> f64 {
-        let pumps = self.network.edges.iter().zip(&state.q_flow_w);
-        pumps.filter(|(edge, _)| matches!(edge.element, Element::Pump(_))).map(|(_, q)| q).sum()
+        self.pumps.iter().map(|pump| state.q_flow_w[*pump]).sum()
     }
 
     pub(crate) fn total_loss_w(&self, state: &NetworkState) -> f64 {

@@ -21,7 +21,6 @@ use anergy_core::error::FactorError;
 use anergy_core::ids::SignalId;
 use anergy_core::recorder::Event;
 use anergy_core::signal::Signals;
-use anergy_network::elements::Element;
 use anergy_network::graph::NodeKind;
 use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::Hold;
@@ -295,12 +294,10 @@ impl Simulation {
         let largest = network.m_flow_kg_s.iter().fold(0.0_f64, |largest, m| largest.max(m.abs()));
         state.passed_kg += largest * dt_s;
         let density = plan.network.medium.density_kg_m3;
-        for (i, edge) in plan.network.edges.iter().enumerate() {
-            let work_j = network.m_flow_kg_s[i] * network.dp_pa(&plan.network, i) / density * dt_s;
-            if matches!(
-                edge.element,
-                Element::Pump(_) | Element::FlowSource(_) | Element::PressureSource(_)
-            ) {
+        for (ends, m_flow_kg_s) in plan.ends.iter().zip(&network.m_flow_kg_s) {
+            let dp_pa = network.p_pa[ends.from as usize] - network.p_pa[ends.to as usize];
+            let work_j = m_flow_kg_s * dp_pa / density * dt_s;
+            if ends.drives {
                 state.pump_hydraulic_j -= work_j;
             } else {
                 state.dissipated_j += work_j;
