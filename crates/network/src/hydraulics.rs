@@ -16,6 +16,7 @@
 mod assemble;
 mod diagnosis;
 mod error;
+mod heads;
 mod ideal;
 mod islands;
 mod line_search;
@@ -110,7 +111,7 @@ pub struct HydraulicSolver {
     carried: Vec<Option<f64>>,
     /// Whether each prescription was tried with its actuator open in this solve.
     opened: Vec<bool>,
-    heads: prescribed::Heads,
+    heads: heads::Heads,
     openings: regulated::Openings,
 }
 
@@ -141,7 +142,7 @@ impl HydraulicSolver {
             shut: None,
             carried: prescribed::carried(network),
             opened: vec![false; network.prescriptions.len()],
-            heads: prescribed::Heads::new(network),
+            heads: heads::Heads::new(network),
             openings: regulated::Openings::new(network),
         })
     }
@@ -220,8 +221,14 @@ impl HydraulicSolver {
         let mut mass_balanced = false;
         for iteration in 1..=most {
             let overshoot = if iteration <= HASTY_ITERATIONS { OVERSHOOT_SHARE } else { 0.0 };
+            // While the heads move the content does too: only full steps meet what is given.
+            let together = self.heads.together;
+            let line_search = mass_balanced && !(together && iteration <= heads::FULL_TOGETHER);
             self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
-            let trial = self.take_step(network, state, mass_balanced, overshoot)?;
+            if together {
+                self.meet(network, state)?;
+            }
+            let trial = self.take_step(network, state, line_search, overshoot)?;
             mass_balanced =
                 iteration > reconsider::ITERATIONS || !self.reconsider(network, state)?;
             if !mass_balanced {
@@ -231,11 +238,11 @@ impl HydraulicSolver {
             if trial.correction <= 1.0
                 && trial.residual_pa <= RESIDUAL_PA + RESIDUAL_RELATIVE * largest_p_pa
                 && self.surrounds(network, state)
+                && (!together || self.largest_miss(network, state) <= 1.0)
             {
                 let (mass_residual_kg_s, _) = self.system.mass_residual(state);
                 if mass_residual_kg_s <= MASS_RESIDUAL_KG_S {
-                    self.known_m_kg_s.copy_from_slice(&state.m_flow_kg_s);
-                    self.known = self.stand.is_empty();
+                    self.keep_known(state);
                     self.system.close(network, state);
                     return Ok(Some(HydraulicReport {
                         iterations: iteration,
@@ -246,6 +253,17 @@ impl HydraulicSolver {
             }
         }
         Ok(None)
+    }
+
+    /// The laws belong to the flows of the state, but for those for which something stands.
+    fn keep_known(&mut self, state: &NetworkState) {
+        self.known_m_kg_s.copy_from_slice(&state.m_flow_kg_s);
+        for (m, stand) in self.known_m_kg_s.iter_mut().zip(&self.stand) {
+            if *stand != Stand::Own {
+                *m = f64::NAN;
+            }
+        }
+        self.known = true;
     }
 
     /// What an edge answers, or what stands for it.
@@ -263,7 +281,8 @@ impl HydraulicSolver {
         for (i, edge) in network.edges.iter().enumerate() {
             let m = state.m_flow_kg_s[i];
             let edge_state = state.edge_state(network, i);
-            if known && self.known_m_kg_s[i] == m && self.known_state[i] == edge_state {
+            let own = self.stand.get(i).is_none_or(|stand| *stand == Stand::Own);
+            if known && own && self.known_m_kg_s[i] == m && self.known_state[i] == edge_state {
                 continue;
             }
             self.known_state[i] = edge_state;

@@ -220,6 +220,31 @@ impl NodalSystem {
         }
         self.tie_floating(largest_conductance);
         self.conductances.factor()?;
+        self.spread(state, kind, laws, step);
+        Ok(())
+    }
+
+    /// Adds what heads in some edges, Pa, change in the pressures and the step, at the last factorisation.
+    pub(super) fn push(
+        &mut self,
+        state: &mut NetworkState,
+        kind: &[Kind],
+        laws: &mut Laws,
+        heads: impl Iterator<Item = (usize, f64)>,
+        step: &mut [f64],
+    ) {
+        self.increment.fill(0.0);
+        for (edge, head) in heads {
+            laws.loss[edge] -= head;
+            let flow = head / laws.slope[edge];
+            step[edge] += flow;
+            balance(&mut self.increment, &self.slots[edge], flow);
+        }
+        self.spread(state, kind, laws, step);
+    }
+
+    /// Solves for the net inflow in `increment`: moves the pressures by it and the step by what they drive.
+    fn spread(&mut self, state: &mut NetworkState, kind: &[Kind], laws: &Laws, step: &mut [f64]) {
         self.conductances.solve_in_place(&mut self.increment);
         self.largest_p_pa = 0.0;
         let pressures = state.p_pa.iter_mut().zip(&mut self.p_rest_pa);
@@ -239,7 +264,6 @@ impl NodalSystem {
             };
             step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / laws.slope[i];
         }
-        Ok(())
     }
 
     /// Whether an end of an edge lies in a part without a pressure level.

@@ -7,10 +7,12 @@
 //! exact sensitivities `d quantity/d h` of the factorised matrix. The position is then the one whose law
 //! has the flow and pressure difference found.
 //!
-//! **Numerics** where no position has them, the actuator stays at the limit that comes closer, with its
+//! **Numerics** the heads are sought in the iteration of the flows (`heads.rs`), and outside of it where that
+//! does not converge. Where no position has what is given, the actuator stays at the limit that comes closer, with its
 //! own law, until the given quantity is passed from there. A prescription changes so at most a few times
 //! in a solve, the last times one at a time.
 
+use super::heads::Heads;
 use super::position::{Place, head_by_position, limits, own_law, place, present, tolerance};
 use super::{HydraulicError, HydraulicReport, HydraulicSolver};
 use crate::graph::{Edge, Network, NodeKind, Quantity};
@@ -18,7 +20,6 @@ use crate::state::{Hold, NetworkState, Prescribed};
 use crate::two_port::Characteristic;
 use anergy_core::ids::EdgeId;
 use anergy_core::linear::Linear;
-use anergy_core::numerics::dense::DenseSystem;
 
 /// A prescribed flow and pressure are met within these.
 pub(super) const FLOW_KG_S: f64 = 1e-8;
@@ -40,30 +41,6 @@ pub(super) enum Stand {
     Flow(f64),
     /// `dp = slope m - head`.
     Head { slope: f64, head: f64 },
-}
-
-/// Work space for the heads of the free edges and for what changes between solves.
-#[derive(Debug, Default)]
-pub(super) struct Heads {
-    /// The prescriptions whose head is sought.
-    sought: Vec<usize>,
-    /// What they miss, in tolerances; then the change of their heads.
-    change: Vec<f64>,
-    system: DenseSystem,
-    /// Prescriptions that change between held and limit, with how much they miss.
-    changes: Vec<(f64, usize, Hold)>,
-}
-
-impl Heads {
-    pub(super) fn new(network: &Network) -> Self {
-        let n = network.prescriptions.len();
-        Self {
-            sought: Vec::with_capacity(n),
-            change: Vec::with_capacity(n),
-            system: DenseSystem::with_room(n),
-            changes: Vec::with_capacity(n),
-        }
-    }
 }
 
 impl Stand {
@@ -143,7 +120,6 @@ impl HydraulicSolver {
         state: &mut NetworkState,
     ) -> Result<HydraulicReport, HydraulicError> {
         let count = network.prescriptions.len();
-        self.known = false;
         // A snapshot continues bit for bit: the stands begin from the state alone.
         self.clear_stands();
         self.opened.fill(false);
@@ -207,7 +183,7 @@ impl HydraulicSolver {
         }
     }
 
-    /// Newton on the heads of the free edges; one hydraulic solve where there is none.
+    /// Heads of the free edges with the flows; one hydraulic solve where there is none.
     fn solve_heads(
         &mut self,
         network: &Network,
@@ -220,96 +196,59 @@ impl HydraulicSolver {
                 self.heads.sought.push(k);
             }
         }
+        if !self.heads.sought.is_empty() {
+            if let Some(report) = self.solve_together(network, state, iterations) {
+                return Ok(report);
+            }
+            for k in 0..network.prescriptions.len() {
+                let edge = network.prescriptions[k].free.index();
+                if matches!(self.stand[edge], Stand::Head { .. }) {
+                    self.stand[edge] = Stand::Own;
+                    self.stand[edge] = self.stand_of(network, state, k);
+                }
+            }
+        }
+        self.solve_nested(network, state, iterations)
+    }
+
+    /// Newton on the heads of the free edges around that of the flows.
+    fn solve_nested(
+        &mut self,
+        network: &Network,
+        state: &mut NetworkState,
+        iterations: &mut u32,
+    ) -> Result<HydraulicReport, HydraulicError> {
         // How much the heads missed before their last change.
         let mut before: Option<f64> = None;
         for _ in 0..MAX_NEWTON {
             let report = self.solve_laws(network, state)?;
             *iterations += report.iterations;
             self.check_floating(network)?;
-            let miss = |k: usize| {
-                let quantity = network.prescriptions[k].quantity;
-                let target = state.prescribed[k].value;
-                (target - present(network, state, quantity)) / tolerance(quantity, target)
-            };
-            let norm = self.heads.sought.iter().fold(0.0_f64, |norm, &k| norm.max(miss(k).abs()));
+            let norm = self.largest_miss(network, state);
             if norm <= 1.0 {
                 return Ok(report);
             }
             match before {
                 // Overshot: half the way back.
                 Some(last) if norm > last => {
-                    self.heads.change.iter_mut().for_each(|change| *change *= -0.5);
-                    self.take_heads(network);
-                    // From here it would be half the way on.
-                    self.heads.change.iter_mut().for_each(|change| *change *= -1.0);
+                    let Heads { change, last_change, .. } = &mut self.heads;
+                    last_change.iter_mut().for_each(|last| *last *= 0.5);
+                    change.clear();
+                    change.extend(last_change.iter().map(|last| -last));
                 }
                 _ => {
-                    self.heads.change.clear();
-                    self.heads.change.extend(self.heads.sought.iter().map(|&k| miss(k)));
                     self.head_changes(network, state)?;
-                    self.take_heads(network);
+                    let Heads { change, last_change, .. } = &mut self.heads;
+                    last_change.clone_from(change);
                     before = Some(norm);
                 }
             }
+            self.take_heads(network);
             state.invalidate_hydraulics();
         }
         let free = self.heads.sought.first();
         let free = free.map_or(0, |&k| network.prescriptions[k].free.index());
         Err(HydraulicError::Undecided { edge: EdgeId::from_index(free) })
-    }
-
-    /// Adds the changes to the heads.
-    fn take_heads(&mut self, network: &Network) {
-        for (&k, change) in self.heads.sought.iter().zip(&self.heads.change) {
-            let free = network.prescriptions[k].free.index();
-            if let Stand::Head { head, .. } = &mut self.stand[free] {
-                *head += change;
-            }
-        }
-    }
-
-    /// Turns what the prescriptions miss into the changes of the heads, by the sensitivities.
-    fn head_changes(
-        &mut self,
-        network: &Network,
-        state: &NetworkState,
-    ) -> Result<(), HydraulicError> {
-        let n = self.heads.sought.len();
-        self.heads.system.begin(n);
-        for column in 0..n {
-            let free = network.prescriptions[self.heads.sought[column]].free;
-            self.system.respond(free.index(), &self.laws);
-            let mut largest = 0.0_f64;
-            for row in 0..n {
-                let j = self.heads.sought[row];
-                let quantity = network.prescriptions[j].quantity;
-                let scale = tolerance(quantity, state.prescribed[j].value);
-                let response = self.response(quantity, free) / scale;
-                self.heads.system.set(row, column, response);
-                largest = largest.max(response.abs());
-            }
-            if largest == 0.0 {
-                return Err(HydraulicError::NoEffect { edge: free });
-            }
-        }
-        if self.heads.system.solve(&mut self.heads.change) {
-            Ok(())
-        } else {
-            let edge = network.prescriptions[self.heads.sought[0]].free;
-            Err(HydraulicError::NoEffect { edge })
-        }
-    }
-
-    /// Change of a quantity by 1 Pa of head of the edge that [`NodalSystem::respond`] was told.
-    fn response(&self, quantity: Quantity, free: EdgeId) -> f64 {
-        match quantity {
-            Quantity::Pressure(node) => self.system.response_pa(node.index()),
-            Quantity::PressureDifference(edge) => self.system.response_dp_pa(edge.index()),
-            Quantity::MassFlow(edge) => {
-                let own = f64::from(u8::from(edge == free));
-                (self.system.response_dp_pa(edge.index()) + own) / self.laws.slope[edge.index()]
-            }
-        }
     }
 
     /// Places the actuators that are free; says which prescriptions turn out to be at a limit, and which
@@ -374,7 +313,7 @@ impl HydraulicSolver {
     }
 
     /// A free edge between parts of which one has no pressure level has no defined position.
-    fn check_floating(&mut self, network: &Network) -> Result<(), HydraulicError> {
+    pub(super) fn check_floating(&mut self, network: &Network) -> Result<(), HydraulicError> {
         for prescription in &network.prescriptions {
             let edge = prescription.free.index();
             if matches!(self.stand[edge], Stand::Flow(_))
