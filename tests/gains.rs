@@ -285,7 +285,7 @@ fn sample(seed: u64) -> Option<(Network, NetworkState)> {
     for (i, kind) in kinds.iter().enumerate() {
         match kind {
             NodeKind::PressureBoundary => {
-                state.set_boundary(i, random.between(1e5, 3e5), 0.0, 300.0)
+                state.set_boundary(i, random.between(1e5, 3e5), 0.0, 300.0);
             }
             NodeKind::Source => state.set_boundary(i, 0.0, random.between(-0.5, 0.5), 300.0),
             _ => {}

@@ -1,5 +1,7 @@
 //! SC-07: the limit of each loop and group without simulating, against the analytic limit and simulation.
 
+#![allow(clippy::unwrap_used)]
+
 use anergy_control::controllers::ControllerParams;
 use anergy_core::clock::Time;
 use anergy_core::recorder::Event;
@@ -166,7 +168,10 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
             // The single pump: 2.8 by Euler steps of 0.1 s, which damp; 3.3 here. Three pumps swing in turn
             // here, not one against two: in the table the last two are alike to the last digit.
             let tolerance = [0.2, 0.03, 0.05][n - 1];
-            assert!(!((size / expected - 1.0).abs() > tolerance), "N = {n}, K = {k}: {size}");
+            assert!(
+                expected.is_nan() || (size / expected - 1.0).abs() <= tolerance,
+                "N = {n}, K = {k}: {size}"
+            );
             if n == 2 && k == 0.04 {
                 let total: Vec<f64> = flows[0].iter().zip(&flows[1]).map(|(a, b)| a + b).collect();
                 assert!(

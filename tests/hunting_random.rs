@@ -1,6 +1,8 @@
 //! Random grids with 2 to 20 flow-controlled feeders: whether the loops are stable by the analysis, and whether
 //! a small push grows in simulation. `HUNTING=500` for the whole set.
 
+#![allow(clippy::unwrap_used)]
+
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;

@@ -253,7 +253,7 @@ fn a_town_finds_its_valves_and_its_pump_again() {
 #[test]
 fn heads_take_no_iterations_of_their_own() {
     let mut text = two_pipe_network(40, 1);
-    let valves: Vec<String> = model(&text)
+    let valves: Vec<_> = model(&text)
         .edges
         .iter()
         .filter(|edge| edge.id.ends_with("extraction_valve"))

@@ -130,7 +130,7 @@ impl Sensor {
             moments,
             first: 0,
             len: 0,
-            random: Pcg32::new(self.seed, 0xa02b_dbf7_bb3c_0a7),
+            random: Pcg32::new(self.seed, 0x0a02_bdbf_7bb3_c0a7),
         };
         state.value = self.reading(raw, &mut state);
         state

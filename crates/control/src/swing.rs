@@ -172,7 +172,7 @@ mod tests {
             (swing.period_s() - 10.0).abs() < 0.05 && (swing.peak_to_peak() - 2.0).abs() < 0.01
         );
         assert!((swing.middle() - 3.0).abs() < 0.01);
-        for phase in [0.0, 0.7, 1.6, 2.5, 3.1416, 4.0, 5.5] {
+        for phase in [0.0, 0.7, 1.6, 2.5, 3.1, 4.0, 5.5] {
             let correlation = swing.correlation(&wave(phase)).unwrap();
             assert!((correlation - phase.cos()).abs() < 0.05, "{phase}: {correlation}");
         }

@@ -100,10 +100,10 @@ impl DenseSystem {
         }
         for column in 0..n {
             let pivot_rhs = rhs[column];
-            for row in column + 1..n {
+            for (row, value) in rhs.iter_mut().enumerate().take(n).skip(column + 1) {
                 let factor = self.matrix[row * n + column];
                 if factor != 0.0 {
-                    rhs[row] -= factor * pivot_rhs;
+                    *value -= factor * pivot_rhs;
                 }
             }
         }

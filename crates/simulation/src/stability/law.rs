@@ -57,9 +57,9 @@ impl Bench<'_> {
         let at = |sign: f64| {
             let (mut measured, mut state) = (self.measured.clone(), self.state.clone());
             if of_state {
-                state[i] += sign * step
+                state[i] += sign * step;
             } else {
-                measured[i] += sign * step
+                measured[i] += sign * step;
             }
             self.update(dt_s, &measured, &state)
         };

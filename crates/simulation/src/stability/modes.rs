@@ -217,9 +217,9 @@ fn crossing(scalar: &Scalar, omegas: &[f64]) -> Option<Limit> {
                 let middle = 0.5 * (low.0 + high.0);
                 let value = f(middle);
                 if low.1.im * value.im <= 0.0 {
-                    high = (middle, value)
+                    high = (middle, value);
                 } else {
-                    low = (middle, value)
+                    low = (middle, value);
                 }
             }
             // Where the phase jumps, nothing crosses.
