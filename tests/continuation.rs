@@ -7,6 +7,7 @@ use anergy_core::recorder::{Channel, Event, Recorder, Recording, RunHeader};
 use anergy_simulation::build::build;
 use anergy_simulation::isolate::{Cut, CutKind};
 use anergy_simulation::model::{ControllerSpec, Model, Place};
+use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::overlay::{Change, OverlayError};
 use anergy_simulation::run::{self, RunOptions};
 use anergy_simulation::simulation::Simulation;
@@ -90,7 +91,7 @@ fn run_recorded(model: &Model, until_s: f64, step_s: f64, record_s: f64) -> Reco
     let rows = Rc::new(RefCell::new(Recording::default()));
     let options = RunOptions {
         until: Some(seconds(until_s)),
-        step: Some(seconds(step_s)),
+        step: Some(StepEntry::Fixed(Duration(seconds(step_s)))),
         record: Some(seconds(record_s)),
     };
     let recorder = Box::new(Keep(rows.clone()));

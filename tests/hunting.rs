@@ -7,6 +7,7 @@ use anergy_core::clock::Time;
 use anergy_core::recorder::Event;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
+use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::simulation::Simulation;
 use anergy_simulation::stability::hunting::{Hunting, hunting};
 use anergy_tests::workspace;
@@ -105,7 +106,7 @@ fn run_flows(model: &Model, from_s: f64, to_s: f64) -> (Vec<Vec<f64>>, Vec<Event
         .map(|i| simulation.channel(&format!("plant.feeder{i}.feed_in_pump.m_flow_kg_s")).unwrap())
         .collect();
     let mut series = vec![Vec::new(); flows.len()];
-    let step = model.run.step.0;
+    let StepEntry::Fixed(Duration(step)) = model.run.step else { panic!("automatic") };
     let mut time = Time::ZERO;
     let mut events = Vec::new();
     while time < Time::from_s(to_s).unwrap() {

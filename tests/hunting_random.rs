@@ -5,6 +5,7 @@
 
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
+use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::simulation::Simulation;
 use anergy_simulation::stability::hunting::hunting;
 use anergy_tests::Random;
@@ -147,7 +148,7 @@ impl Grid {
             .iter()
             .map(|f| simulation.channel(&format!("{}.feed_in_pump.m_flow_kg_s", f.name)).unwrap())
             .collect();
-        let step = model.run.step.0;
+        let StepEntry::Fixed(Duration(step)) = model.run.step else { panic!("automatic") };
         let half = ((0.5 * period_s / step.as_s()).round() as usize).max(1);
         let periods = |n: f64| (n * period_s / step.as_s()) as usize;
         let longest = (12.0 / (growth_per_s.abs() * period_s)).clamp(60.0, 1000.0);

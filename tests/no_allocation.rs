@@ -8,6 +8,7 @@ use anergy_benches::two_pipe_network;
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_core::ids::SignalId;
 use anergy_network::elements::ElementParams;
+use anergy_simulation::automatic_step::Step;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
@@ -209,4 +210,21 @@ fn prescriptions_self_acting_and_pulsing_valves() {
     let get = |name: &str| simulation.get(simulation.channel(name).unwrap());
     assert!((get("neighbour.dp_pa") / 7e4 - 1.0).abs() < 1e-6, "{}", get("neighbour.dp_pa"));
     assert!((2e4..2.2e4).contains(&get("load.dp_pa")), "{}", get("load.dp_pa"));
+}
+
+#[test]
+fn automatic_steps() {
+    let model = model(&two_pipe_network(100, 1));
+    let mut simulation = simulation(&model);
+    let step = Step::Automatic(simulation.plan().automatic_step());
+    let pump = simulation.signal("plant.feed_in_pump.speed").unwrap();
+    simulation.advance_to(Time(3600 * NS_PER_S), step).unwrap();
+    simulation.take_events();
+    simulation.set(pump, 0.99).unwrap();
+    let done = simulation.state().clone();
+    let counted = measure(|| {
+        simulation.advance_to(Time(5400 * NS_PER_S), step).unwrap();
+    });
+    assert!(*simulation.state() != done);
+    assert_eq!((counted.count_total, simulation.take_events().len()), (0, 0));
 }

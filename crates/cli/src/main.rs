@@ -36,8 +36,8 @@ enum Command {
         /// End of the run, for example 1d (overrides the model)
         #[arg(long, value_name = "DURATION")]
         until: Option<String>,
-        /// Largest time step, for example 10s (overrides the model)
-        #[arg(long, value_name = "DURATION")]
+        /// Largest time step, for example 10s, or auto (overrides the model)
+        #[arg(long, value_name = "DURATION|auto")]
         step: Option<String>,
         /// Time between recorded rows, for example 60s (overrides the model)
         #[arg(long, value_name = "DURATION")]

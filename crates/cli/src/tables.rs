@@ -103,6 +103,18 @@ pub fn print_key_results(summary: &Value) {
             line!("balance of {what} closes to {error:.1e}");
         }
     }
+    let steps = &summary["automatic_step"];
+    if let (Some(count), Some(limit)) =
+        (steps["steps"].as_u64(), steps["limited_most_often_by"].as_str())
+    {
+        let length = |key: &str| steps[key].as_f64().unwrap_or(f64::NAN);
+        line!(
+            "{count} automatic steps of {:.3} to {:.3} s, {:.3} s on average, limited most often by: {limit}",
+            length("smallest_s"),
+            length("largest_s"),
+            length("mean_s")
+        );
+    }
 }
 
 /// What happened, one line each.

@@ -215,6 +215,20 @@ impl NetworkState {
         }
     }
 
+    /// Copies positions and lags of all actuators.
+    pub fn copy_actuators(&self, positions: &mut Vec<f64>, lags: &mut Vec<f64>) {
+        positions.clone_from(&self.position);
+        lags.clone_from(&self.actuator_lag);
+    }
+
+    /// Puts actuators and flows back to where they were: a step that is tried again.
+    pub fn put_back(&mut self, positions: &[f64], lags: &[f64], m_flow_kg_s: &[f64]) {
+        self.position.copy_from_slice(positions);
+        self.actuator_lag.copy_from_slice(lags);
+        self.m_flow_kg_s.copy_from_slice(m_flow_kg_s);
+        self.hydraulics_valid = false;
+    }
+
     /// Sets the given pressure, flow and temperature of a node.
     pub fn set_boundary(&mut self, node: usize, p_pa: f64, m_flow_kg_s: f64, t_k: f64) {
         if self.given_p_pa[node] != p_pa || self.given_m_flow_kg_s[node] != m_flow_kg_s {

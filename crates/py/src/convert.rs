@@ -1,6 +1,7 @@
 //! Between Python objects and JSON values, and from seconds to simulated time.
 
 use anergy_core::clock::Time;
+use anergy_simulation::model_file::{Duration, StepEntry};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PySequence, PyString};
@@ -118,4 +119,28 @@ pub fn duration(name: &str, seconds: f64) -> PyResult<Time> {
     Time::from_s(seconds)
         .filter(|time| *time > Time::ZERO)
         .ok_or_else(|| PyValueError::new_err(format!("{name} = {seconds} must be positive")))
+}
+
+/// A step as it is given in Python: seconds, or "auto".
+#[derive(FromPyObject)]
+pub enum StepArgument {
+    /// Seconds.
+    Seconds(f64),
+    /// The word.
+    Word(String),
+}
+
+impl StepArgument {
+    /// The step.
+    pub fn step(self) -> PyResult<StepEntry> {
+        match self {
+            Self::Seconds(seconds) => {
+                duration("step_s", seconds).map(|step| StepEntry::Fixed(Duration(step)))
+            }
+            Self::Word(word) if word == "auto" => Ok(StepEntry::Automatic),
+            Self::Word(word) => Err(PyValueError::new_err(format!(
+                "step_s = \"{word}\" must be a number of seconds or \"auto\""
+            ))),
+        }
+    }
 }

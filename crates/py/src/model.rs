@@ -5,6 +5,7 @@ mod text;
 
 pub use text::load_model;
 
+use crate::convert::StepArgument;
 use crate::errors::{self, ModelError, Origin};
 use crate::result::RunResult;
 use crate::simulation::Simulation;
@@ -317,8 +318,8 @@ impl Model {
     /// ----------
     /// until_s : float, optional
     ///     End, s since the start. Absent: the model's `[run]`, here and below.
-    /// step_s : float, optional
-    ///     Largest time step, s.
+    /// step_s : float or "auto", optional
+    ///     Largest time step, s, or the automatic one.
     /// record_s : float, optional
     ///     Time between recorded rows, s.
     /// out : str or os.PathLike, optional
@@ -351,13 +352,13 @@ impl Model {
         &self,
         py: Python<'_>,
         until_s: Option<f64>,
-        step_s: Option<f64>,
+        step_s: Option<StepArgument>,
         record_s: Option<f64>,
         out: Option<PathBuf>,
     ) -> PyResult<Py<RunResult>> {
         let options = RunOptions {
             until: until_s.map(|value| convert::time("until_s", value)).transpose()?,
-            step: step_s.map(|value| convert::duration("step_s", value)).transpose()?,
+            step: step_s.map(StepArgument::step).transpose()?,
             record: record_s.map(|value| convert::duration("record_s", value)).transpose()?,
         };
         run::run(py, self.plan(py)?, options, out.as_deref())
@@ -367,9 +368,8 @@ impl Model {
     ///
     /// Parameters
     /// ----------
-    /// step_s : float, optional
-    ///     What one `step()` advances, s, and the largest internal time step. Absent: the model's
-    ///     `[run]`.
+    /// step_s : float or "auto", optional
+    ///     What one `step()` advances, s; "auto": an automatic step. Absent: the model's `[run]`.
     ///
     /// Raises
     /// ------
@@ -378,8 +378,8 @@ impl Model {
     /// RunError
     ///     When its state at the start cannot be solved.
     #[pyo3(signature = (step_s=None))]
-    fn simulation(&self, py: Python<'_>, step_s: Option<f64>) -> PyResult<Simulation> {
-        let step = step_s.map(|value| convert::duration("step_s", value)).transpose()?;
+    fn simulation(&self, py: Python<'_>, step_s: Option<StepArgument>) -> PyResult<Simulation> {
+        let step = step_s.map(StepArgument::step).transpose()?;
         Simulation::new(py, self.plan(py)?, step)
     }
 

@@ -8,7 +8,9 @@ use crate::snapshot::Snapshot;
 use anergy_core::clock::Time;
 use anergy_core::ids::{ChannelId, SignalId};
 use anergy_core::recorder::Event;
+use anergy_simulation::automatic_step::Step;
 use anergy_simulation::error::RunError;
+use anergy_simulation::model_file::StepEntry;
 use anergy_simulation::plan::Plan;
 use anergy_simulation::simulation;
 use pyo3::exceptions::PyValueError;
@@ -64,12 +66,12 @@ enum Name<'py> {
 #[pyclass(module = "anergy")]
 pub struct Simulation {
     simulation: simulation::Simulation,
-    step: Time,
+    step: Step,
 }
 
 impl Simulation {
-    pub fn new(py: Python<'_>, plan: Arc<Plan>, step: Option<Time>) -> PyResult<Self> {
-        let step = step.unwrap_or(plan.step());
+    pub fn new(py: Python<'_>, plan: Arc<Plan>, step: Option<StepEntry>) -> PyResult<Self> {
+        let step = plan.step_of(step);
         match py.detach(|| simulation::Simulation::new(plan)) {
             Ok(simulation) => Ok(Self { simulation, step }),
             Err(error) => Err(failure(py, &error)),
@@ -83,8 +85,33 @@ impl Simulation {
         let simulation = &mut self.simulation;
         let outcome = py.detach(|| {
             while simulation.time() < target && watch.go_on() {
-                let end = target.min(simulation.time().next_multiple(step));
-                simulation.advance_to(end, step)?;
+                match step {
+                    Step::Fixed(largest) => {
+                        let end = target.min(simulation.time().next_multiple(largest));
+                        simulation.advance_to(end, step)?;
+                    }
+                    Step::Automatic(_) => simulation.advance_once(target, &step)?,
+                }
+            }
+            Ok(())
+        });
+        match (outcome, watch.into_raised()) {
+            (Err(error), _) => Err(failure(py, &error)),
+            (Ok(()), Some(raised)) => Err(raised),
+            (Ok(()), None) => Ok(()),
+        }
+    }
+
+    /// Does automatic steps, looking for Ctrl-C.
+    fn automatic_steps(&mut self, py: Python<'_>, n: u32) -> PyResult<()> {
+        let mut watch = SignalWatch::new();
+        let step = self.step;
+        let simulation = &mut self.simulation;
+        let outcome = py.detach(|| {
+            let mut left = n;
+            while left > 0 && watch.go_on() {
+                simulation.advance_once(Time::NEVER, &step)?;
+                left -= 1;
             }
             Ok(())
         });
@@ -153,10 +180,13 @@ impl Simulation {
         self.simulation.time().as_s()
     }
 
-    /// What one `step()` advances, s.
+    /// What one `step()` advances, s; None where that is an automatic step.
     #[getter]
-    fn step_s(&self) -> f64 {
-        self.step.as_s()
+    fn step_s(&self) -> Option<f64> {
+        match self.step {
+            Step::Fixed(step) => Some(step.as_s()),
+            Step::Automatic(_) => None,
+        }
     }
 
     /// Names of what `get` reads, `component.quantity_unit` (list of str).
@@ -255,7 +285,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Advances by `n` times `step_s`; other Python threads run meanwhile.
+    /// Advances by `n` times `step_s`, or `n` automatic steps; other Python threads run meanwhile.
     ///
     /// Raises
     /// ------
@@ -265,8 +295,13 @@ impl Simulation {
     ///     After Ctrl-C; the simulation stays at the last complete step.
     #[pyo3(signature = (n=1))]
     fn step(&mut self, py: Python<'_>, n: u32) -> PyResult<()> {
-        let span = Time(self.step.0.saturating_mul(i64::from(n)));
-        self.advance_to(py, self.simulation.time() + span)
+        match self.step {
+            Step::Fixed(step) => {
+                let span = Time(step.0.saturating_mul(i64::from(n)));
+                self.advance_to(py, self.simulation.time() + span)
+            }
+            Step::Automatic(_) => self.automatic_steps(py, n),
+        }
     }
 
     /// Advances to a time; other Python threads run meanwhile.
@@ -326,7 +361,7 @@ impl Simulation {
     }
 
     fn __repr__(&self) -> String {
-        format!("<anergy.Simulation at {} s, step {} s>", self.time_s(), self.step_s())
+        format!("<anergy.Simulation at {} s, step {}>", self.time_s(), self.step)
     }
 }
 

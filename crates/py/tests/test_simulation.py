@@ -168,3 +168,17 @@ def test_step_of_the_model(model):
     sim.advance(4)
     sim.step()
     assert sim.time_s == 6.5
+
+
+def test_automatic_step(model):
+    sim = model.simulation(step_s="auto")
+    assert sim.step_s is None
+    sim.step(3)
+    assert 0 < sim.time_s < 10
+    sim.advance(600)
+    assert sim.time_s == 600
+    fixed = model.simulate(until_s=600, step_s=1, record_s=600)
+    name = "sf1.station.m_flow_kg_s"
+    assert abs(sim.get(name) - fixed[name][-1]) < 1e-3
+    with pytest.raises(ValueError, match="auto"):
+        model.simulation(step_s="soon")

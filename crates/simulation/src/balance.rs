@@ -241,6 +241,9 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
             "largest mass residual in kg/s": balances.mass_residual_kg_s,
         },
     });
+    if let Some(steps) = state.stepping.report() {
+        summary["automatic_step"] = steps;
+    }
     let friction = balance("heat of friction", balances.friction_j / 3.6e6, "kWh", heat);
     if !state.network.friction_k.is_empty()
         && let Some(lines) = summary["balances"].as_array_mut()

@@ -13,6 +13,7 @@ mod signals;
 
 pub(crate) use network::pipe_temperatures;
 
+use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::model::{Model, Place};
@@ -235,7 +236,9 @@ impl Builder<'_> {
             model_name: model.name.clone(),
             model_text: model.text.clone(),
             start_unix_ns: start_unix_ns(model),
-            step: steps.0,
+            step: steps.0.shortest(),
+            stepping: steps.0,
+            automatic: AutomaticStep::of(&self.model.run),
             record: steps.1,
             until: steps.2,
             starts_settled: model.run.initial == InitialState::Steady,
@@ -291,9 +294,9 @@ impl Builder<'_> {
         stations
     }
 
-    fn run_times(&mut self) -> (Time, Time, Time) {
+    fn run_times(&mut self) -> (Step, Time, Time) {
         let run = &self.model.run;
-        (run.step.0, run.record.0, run.until.0)
+        (Step::of(run), run.record.0, run.until.0)
     }
 
     fn initial_state(
@@ -338,6 +341,7 @@ impl Builder<'_> {
             dissipated_j: 0.0,
             initial_stored_j: 0.0,
             largest_mass_residual_kg_s: 0.0,
+            stepping: crate::automatic_step::StepMemory::default(),
             steps: 0,
             solves: 0,
             iterations: 0,

@@ -57,6 +57,17 @@ impl Driver {
         self.times.get(*near).copied().unwrap_or(Time::NEVER)
     }
 
+    /// Whether its last point, of `passed` ones, is now.
+    pub fn turns_at(&self, now: Time, passed: usize) -> bool {
+        passed > 0 && self.times.get(passed - 1) == Some(&now)
+    }
+
+    /// Whether the value changes at the last one of `passed` points instead of from there on.
+    pub fn jumps_at(&self, passed: usize) -> bool {
+        let held = self.interpolation == Interpolation::Hold;
+        held && passed > 1 && self.values[passed - 1] != self.values[passed - 2]
+    }
+
     /// Number of points that have passed: looked for from `near` on, anywhere if it is not there.
     fn passed(&self, near: usize, passed: impl Fn(Time) -> bool) -> usize {
         let is = |i: usize| self.times.get(i).is_some_and(|time| passed(*time));

@@ -34,6 +34,7 @@
 //! assert!((steady.edge("pump").unwrap().m_flow_kg_s * 60.0 - 18.8548).abs() < 1e-3);
 //! ```
 
+pub mod automatic_step;
 pub mod balance;
 pub mod build;
 pub mod channels;

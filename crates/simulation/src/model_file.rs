@@ -15,7 +15,7 @@ pub mod series;
 mod tables;
 mod three_way_valve;
 
-pub use duration::Duration;
+pub use duration::{Duration, StepEntry};
 pub use fluid::{FluidEntry, FluidKind};
 pub use ground::{GroundEntry, GroundKind};
 pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
@@ -63,9 +63,22 @@ pub struct RunEntry {
     /// End of the run, for example "1h".
     #[serde(default = "one_hour")]
     pub until: Duration,
-    /// Largest time step, for example "1s".
+    /// Largest time step, for example "1s", or "auto": as long as flows, temperatures and controllers allow.
     #[serde(default = "one_second")]
-    pub step: Duration,
+    pub step: StepEntry,
+    /// Shortest automatic step.
+    #[serde(default = "tenth_second")]
+    pub step_min: Duration,
+    /// Longest automatic step.
+    #[serde(default = "quarter_hour")]
+    pub step_max: Duration,
+    /// Error of a temperature that an automatic step may make at the ports of units, K.
+    #[serde(default = "half_kelvin")]
+    pub step_tolerance_difference_k: f64,
+    /// Error of a flow that an automatic step may make, relative to the flow and at least to a tenth of its
+    /// nominal flow; of the output of a continuous controller, relative to its range.
+    #[serde(default = "one_percent")]
+    pub step_tolerance_flow: f64,
     /// Time between recorded rows, for example "10s".
     #[serde(default = "ten_seconds")]
     pub record: Duration,
@@ -78,6 +91,29 @@ pub struct RunEntry {
     /// What the run starts from.
     #[serde(default, skip_serializing_if = "InitialState::is_given")]
     pub initial: InitialState,
+}
+
+impl RunEntry {
+    /// What is wrong with the automatic step: field and message.
+    pub fn step_problems(&self) -> Vec<(&'static str, String)> {
+        let mut problems = Vec::new();
+        if self.step_min > self.step_max {
+            let (min, max) = (self.step_min.0, self.step_max.0);
+            let message = format!("the shortest step, {min}, is longer than the longest, {max}");
+            problems.push(("step_min", message));
+        }
+        let k = self.step_tolerance_difference_k;
+        if !(k.is_finite() && k > 0.0) {
+            let message = format!("step_tolerance_difference_k = {k} must be positive");
+            problems.push(("step_tolerance_difference_k", message));
+        }
+        let share = self.step_tolerance_flow;
+        if !(share > 0.0 && share < 1.0) {
+            let message = format!("step_tolerance_flow = {share} must be between 0 and 1");
+            problems.push(("step_tolerance_flow", message));
+        }
+        problems
+    }
 }
 
 /// What a run starts from.
@@ -102,8 +138,24 @@ fn one_hour() -> Duration {
     Duration(Time(3_600_000_000_000))
 }
 
-fn one_second() -> Duration {
-    Duration(Time(1_000_000_000))
+fn one_second() -> StepEntry {
+    StepEntry::Fixed(Duration(Time(1_000_000_000)))
+}
+
+fn tenth_second() -> Duration {
+    Duration(Time(100_000_000))
+}
+
+fn quarter_hour() -> Duration {
+    Duration(Time(900_000_000_000))
+}
+
+fn half_kelvin() -> f64 {
+    0.5
+}
+
+fn one_percent() -> f64 {
+    0.01
 }
 
 fn ten_seconds() -> Duration {

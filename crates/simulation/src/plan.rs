@@ -1,7 +1,9 @@
 //! The plan of a simulation: everything that does not change during a run, by id.
 
+use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels::{self, Source};
 use crate::drivers::Driver;
+use crate::model_file::StepEntry;
 use crate::state::State;
 use anergy_control::controllers::LocalController;
 use anergy_control::sensor::Sensor;
@@ -284,7 +286,11 @@ pub struct Plan {
     pub(crate) model_name: String,
     pub(crate) model_text: Arc<str>,
     pub(crate) start_unix_ns: i64,
+    /// Largest fixed step, or shortest automatic one.
     pub(crate) step: Time,
+    pub(crate) stepping: Step,
+    /// What an automatic step keeps to.
+    pub(crate) automatic: AutomaticStep,
     pub(crate) record: Time,
     pub(crate) until: Time,
     /// Whether a run starts from the steady state.
@@ -325,9 +331,28 @@ impl Plan {
         state.q_loss_w.iter().sum::<f64>() + state.q_loss_nodes_w
     }
 
-    /// Largest time step.
+    /// Largest fixed step, or shortest automatic one.
     pub fn step(&self) -> Time {
         self.step
+    }
+
+    /// How steps are chosen.
+    pub fn stepping(&self) -> Step {
+        self.stepping
+    }
+
+    /// How steps are chosen where a run may be told something else.
+    pub fn step_of(&self, told: Option<StepEntry>) -> Step {
+        match told {
+            None => self.stepping,
+            Some(StepEntry::Fixed(step)) => Step::Fixed(step.0),
+            Some(StepEntry::Automatic) => Step::Automatic(self.automatic),
+        }
+    }
+
+    /// Limits and tolerances of automatic steps.
+    pub fn automatic_step(&self) -> AutomaticStep {
+        self.automatic
     }
 
     /// Time between recorded rows.

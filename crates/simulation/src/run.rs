@@ -1,7 +1,9 @@
 //! A whole run into a recorder.
 
+use crate::automatic_step::Step;
 use crate::balance;
 use crate::error::RunError;
+use crate::model_file::StepEntry;
 use crate::simulation::Simulation;
 use anergy_core::clock::Time;
 use anergy_core::recorder::{Recorder, RunHeader};
@@ -12,8 +14,8 @@ use serde_json::Value;
 pub struct RunOptions {
     /// End of the run.
     pub until: Option<Time>,
-    /// Largest time step.
-    pub step: Option<Time>,
+    /// Largest time step, or an automatic one.
+    pub step: Option<StepEntry>,
     /// Time between recorded rows.
     pub record: Option<Time>,
 }
@@ -40,7 +42,7 @@ pub fn run(
 ) -> Result<RunReport, RunError> {
     let plan = simulation.plan().clone();
     let until = options.until.unwrap_or(plan.until);
-    let step = options.step.unwrap_or(plan.step);
+    let step = plan.step_of(options.step);
     let record = options.record.unwrap_or(plan.record);
     recorder.start(&header(&plan, until, step, record), plan.channels())?;
     let mut row = vec![0.0; plan.channels().len()];
@@ -78,7 +80,7 @@ pub fn run(
     }
 }
 
-fn header(plan: &crate::plan::Plan, until: Time, step: Time, record: Time) -> RunHeader {
+fn header(plan: &crate::plan::Plan, until: Time, step: Step, record: Time) -> RunHeader {
     let setting = |name: &str, value: String| (name.to_owned(), value);
     RunHeader {
         model_name: plan.model_name.clone(),

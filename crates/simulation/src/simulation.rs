@@ -10,9 +10,11 @@ mod pressure;
 mod pulses;
 mod saturation;
 mod stations;
+mod stepping;
 mod validity;
 mod words;
 
+use crate::automatic_step::{AutomaticStep, Limit};
 use crate::error::RunError;
 use crate::plan::Plan;
 use crate::state::State;
@@ -33,6 +35,7 @@ pub(crate) use pressure::crossings;
 pub(crate) use saturation::{Missed, missed_now};
 pub(crate) use stations::BlockedSpan;
 use std::sync::Arc;
+use stepping::Stepper;
 pub use words::Unreached;
 pub(crate) use words::named;
 use words::prescribed_event;
@@ -51,6 +54,7 @@ pub struct Simulation {
     /// Where each driver was found last; results do not depend on it.
     near: Vec<usize>,
     desk: Desk,
+    stepper: Stepper,
 }
 
 impl Simulation {
@@ -73,6 +77,7 @@ impl Simulation {
             holds: vec![Hold::Held; plan.prescriptions.len()],
             near: vec![0; plan.drivers.len()],
             desk: Desk::new(&plan),
+            stepper: Stepper::new(&plan),
             plan,
         };
         simulation.begin()?;
@@ -114,22 +119,20 @@ impl Simulation {
         Ok(())
     }
 
-    /// Advances towards `end` in one step, which a pulsing valve may end earlier: sense, control, inputs, actuators, unit requests, hydraulics,
-    /// transport, units, flags, balances.
-    fn step_to(&mut self, end: Time) -> Result<(), RunError> {
+    /// Advances towards `latest` in one step, which a pulsing valve or the automatic step may end earlier: sense,
+    /// control, inputs, actuators, unit requests, hydraulics, transport, units, flags, balances.
+    fn step_to(
+        &mut self,
+        latest: (Time, Limit),
+        automatic: Option<&AutomaticStep>,
+    ) -> Result<(), RunError> {
         let now = self.state.time;
         self.control(now)?;
-        self.drive_inputs(end);
-        let latest = end;
-        let end = self.begin_pulses(now, latest);
-        if end < latest {
-            self.drive_inputs(end);
-        }
+        let end = match automatic {
+            None => self.flow_until(now, latest.0)?,
+            Some(limits) => self.flow_within(now, latest, limits)?,
+        };
         let dt_s = (end - now).as_s();
-        self.request_units();
-        self.apply_inputs();
-        self.move_actuators(dt_s);
-        self.solve_hydraulics()?;
         self.transport
             .advance(&self.plan.network, &mut self.state.network, dt_s)
             .map_err(|source| RunError::Singular { time: now.to_string(), source })?;
@@ -146,34 +149,24 @@ impl Simulation {
         self.sense(end, dt_s);
         self.state.time = end;
         self.state.steps += 1;
+        if let Some(limits) = automatic {
+            self.conclude_automatic(dt_s, limits);
+        }
         Ok(())
     }
 
-    /// Advances to `target`, as many steps as schedules, controllers and `largest_step` ask for.
-    ///
-    /// # Errors
-    /// [`RunError`] names the component that failed; the state is that of the last good step.
-    pub fn advance_to(&mut self, target: Time, largest_step: Time) -> Result<(), RunError> {
-        while self.state.time < target {
-            let now = self.state.time;
-            let mut end = target.min(now.next_multiple(largest_step));
-            if let Some(longest) = self.plan.soil_step {
-                end = end.min(now + longest);
-            }
-            for (driver, near) in self.plan.drivers.iter().zip(&mut self.near) {
-                end = end.min(driver.next_breakpoint(now, near));
-            }
-            for (controller, next) in self.plan.controllers.iter().zip(&self.state.next_tick) {
-                if controller.interval > Time::ZERO {
-                    // One that is due now ticks in this step; the next one bounds it.
-                    let next = if *next <= now { *next + controller.interval } else { *next };
-                    end = end.min(next.max(Time(now.0 + 1)));
-                }
-            }
-            self.step_to(end)?;
-            self.check_temperatures(&end)?;
+    /// Inputs, actuators and flows of a step that ends at `latest`, or where a pulsing valve ends it.
+    fn flow_until(&mut self, now: Time, latest: Time) -> Result<Time, RunError> {
+        self.drive_inputs(latest);
+        let end = self.begin_pulses(now, latest);
+        if end < latest {
+            self.drive_inputs(end);
         }
-        Ok(())
+        self.request_units();
+        self.apply_inputs();
+        self.move_actuators((end - now).as_s());
+        self.solve_hydraulics()?;
+        Ok(end)
     }
 
     /// Schedules and series write their signals.

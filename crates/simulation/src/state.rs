@@ -1,5 +1,6 @@
 //! The state of a simulation: plain data, so that a clone or its bytes are a snapshot.
 
+use crate::automatic_step::StepMemory;
 use crate::error::RunError;
 use crate::simulation::{BlockedSpan, Missed, SwingState};
 use anergy_control::sensor::SensorState;
@@ -73,6 +74,8 @@ pub struct State {
     pub(crate) dissipated_j: f64,
     pub(crate) initial_stored_j: f64,
     pub(crate) largest_mass_residual_kg_s: f64,
+    /// What the automatic step remembers.
+    pub(crate) stepping: StepMemory,
     pub(crate) steps: u64,
     pub(crate) solves: u64,
     pub(crate) iterations: u64,
@@ -103,6 +106,7 @@ impl State {
             + heap(&self.next_tick)
             + heap(&self.last_tick)
             + heap(&self.pipes)
+            + self.stepping.heap_bytes()
     }
 
     /// The state as bytes.

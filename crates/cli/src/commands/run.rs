@@ -8,7 +8,7 @@ use anergy_core::clock::Time;
 use anergy_recording::McapRecorder;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
-use anergy_simulation::model_file::Duration;
+use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::run::{self, RunOptions};
 use anergy_simulation::simulation::Simulation;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,10 @@ pub fn run(
     };
     let options = RunOptions {
         until: duration("until", until)?,
-        step: duration("step", step)?,
+        step: step
+            .map(|text| StepEntry::parse(&text))
+            .transpose()
+            .map_err(|problem| Failure::Usage(format!("--step: {problem}")))?,
         record: duration("record", record)?,
     };
     let (text, model) = read_model(path)?;

@@ -1,7 +1,7 @@
 # Docstrings are in src/*.rs; `python -m mypy.stubtest anergy` compares this file with them.
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, SupportsFloat, SupportsIndex, TypeAlias, final
+from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -76,11 +76,11 @@ class Model:
     def simulate(
         self,
         until_s: _Float | None = None,
-        step_s: _Float | None = None,
+        step_s: _Float | Literal["auto"] | None = None,
         record_s: _Float | None = None,
         out: _Path | None = None,
     ) -> Result: ...
-    def simulation(self, step_s: _Float | None = None) -> Simulation: ...
+    def simulation(self, step_s: _Float | Literal["auto"] | None = None) -> Simulation: ...
     def _repr_html_(self) -> str: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
@@ -137,7 +137,7 @@ class Simulation:
     @property
     def time_s(self) -> float: ...
     @property
-    def step_s(self) -> float: ...
+    def step_s(self) -> float | None: ...
     @property
     def channels(self) -> list[str]: ...
     @property

@@ -17,11 +17,6 @@ impl Duration {
     pub fn parse(text: &str) -> Result<Self, String> {
         let hint = "write for example \"10s\", \"15min\", \"1h\" or \"1d 12h\"";
         let compact: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-        if compact == "auto" {
-            return Err(
-                "the automatic step is not available yet; give a step such as \"1s\"".into()
-            );
-        }
         if let Ok(seconds) = compact.parse::<f64>() {
             return Self::from_s(seconds);
         }
@@ -63,6 +58,81 @@ impl Duration {
             )),
             _ => Err(format!("a duration must be positive, not {seconds} s")),
         }
+    }
+}
+
+/// A step: a span of time, or "auto".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepEntry {
+    /// At most so long.
+    Fixed(Duration),
+    /// As long as flows, temperatures and controllers allow.
+    Automatic,
+}
+
+impl StepEntry {
+    /// Parses "auto" or a duration.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        if text.trim() == AUTO {
+            return Ok(Self::Automatic);
+        }
+        Duration::parse(text).map(Self::Fixed).map_err(|problem| format!("{problem}, or \"auto\""))
+    }
+}
+
+const AUTO: &str = "auto";
+
+impl Serialize for StepEntry {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Fixed(step) => step.serialize(serializer),
+            Self::Automatic => serializer.serialize_str(AUTO),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for StepEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl de::Visitor<'_> for Visitor {
+            type Value = StepEntry;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"auto\", a duration such as \"10s\" or a number of seconds")
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<StepEntry, E> {
+                StepEntry::parse(text).map_err(E::custom)
+            }
+            fn visit_f64<E: de::Error>(self, seconds: f64) -> Result<StepEntry, E> {
+                Duration::from_s(seconds).map(StepEntry::Fixed).map_err(E::custom)
+            }
+            fn visit_u64<E: de::Error>(self, seconds: u64) -> Result<StepEntry, E> {
+                self.visit_f64(seconds as f64)
+            }
+            fn visit_i64<E: de::Error>(self, seconds: i64) -> Result<StepEntry, E> {
+                self.visit_f64(seconds as f64)
+            }
+        }
+        deserializer.deserialize_any(Visitor)
+    }
+}
+
+impl JsonSchema for StepEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Step".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "type": ["string", "number"],
+            "examples": ["auto", "1s", "15min", 60]
+        })
     }
 }
 
@@ -127,6 +197,8 @@ mod tests {
         assert_eq!(s("0.5"), Ok(0.5));
         assert!(s("400 y").unwrap_err().contains("too long"));
         assert!(s("0s").unwrap_err().contains("must be positive"));
+        assert_eq!(StepEntry::parse(" auto"), Ok(StepEntry::Automatic));
+        assert!(StepEntry::parse("soon").unwrap_err().contains("auto"));
         for wrong in ["", "abc", "1x", "-1s", "0s", "1h30", "auto", "1e400"] {
             assert!(s(wrong).is_err(), "{wrong}");
         }

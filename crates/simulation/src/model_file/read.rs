@@ -156,6 +156,9 @@ struct Later {
     edges: Vec<Diagnostic>,
 }
 
+const STEP_HINT: &str = "the automatic step lies between step_min = \"0.1s\" and step_max = \"15min\" where nothing is \
+                         given, with tolerances of 0.5 K and 0.01";
+
 /// The stations of a model file.
 #[derive(Default)]
 struct Stations {
@@ -189,6 +192,10 @@ impl ModelReader<'_> {
         if let Some((run, place)) = &run {
             let water = self.water();
             self.check_temperature(&water, "initial_k", run.initial_k, place);
+            for (field, message) in run.step_problems() {
+                let problem = refused("[run]", place, Some(field), &message);
+                self.reader.report(problem.with_hint(STEP_HINT));
+            }
         }
         if let Some((ground, place)) = &ground {
             self.check_ground(ground, place, run.as_ref().map(|(run, _)| run));

@@ -32,6 +32,9 @@ impl Simulation {
                 max: spec.max,
             });
         }
+        if self.state.signals[id.index()] != value {
+            self.state.stepping.forget();
+        }
         self.state.signals[id.index()] = value;
         self.state.taken_over[id.index()] = true;
         Ok(())
@@ -40,6 +43,7 @@ impl Simulation {
     /// Gives a signal back to its schedule or controller.
     pub fn release(&mut self, id: SignalId) {
         self.state.taken_over[id.index()] = false;
+        self.state.stepping.forget();
     }
 
     /// Pressures, flows, temperatures and positions at present.
@@ -99,7 +103,8 @@ impl Simulation {
             && own.pulse_shares.len() == other.pulse_shares.len()
             && own.vessels.len() == other.vessels.len()
             && own.missed.len() == other.missed.len()
-            && own.crossed.len() == other.crossed.len();
+            && own.crossed.len() == other.crossed.len()
+            && own.stepping.fits(&other.stepping);
         if !fits {
             return Err(RunError::Snapshot { problem: "it is of another model".into() });
         }
