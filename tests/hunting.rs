@@ -309,7 +309,7 @@ fn a_supply_temperature_behind_a_pipe_has_the_limit_that_simulation_finds() {
         let model = supply_temperature(gain, 200.0, 333.20);
         let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
         let channel = simulation.channel("supply.value").unwrap();
-        let step = model.run.step.0;
+        let StepEntry::Fixed(Duration(step)) = model.run.step else { panic!("automatic") };
         let mut series = Vec::new();
         for _ in 0..30_000 {
             simulation.advance_to(simulation.time() + step, step).unwrap();

@@ -1,12 +1,12 @@
 //! The plan of a simulation: everything that does not change during a run, by id.
 
+mod control;
+
 use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels::{self, Source};
 use crate::drivers::Driver;
 use crate::model_file::StepEntry;
 use crate::state::State;
-use anergy_control::controllers::LocalController;
-use anergy_control::sensor::Sensor;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::recorder::{Channel, MapEdge, MapNode, NetworkMap};
@@ -18,6 +18,7 @@ use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 use anergy_prosumer::equipment::Equipment;
+pub(crate) use control::{PlannedController, PlannedSensor, SwingWatch};
 use smol_str::SmolStr;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -34,48 +35,6 @@ pub(crate) struct PlannedUnit {
     pub inputs: Range<usize>,
     pub state: Range<usize>,
     pub outputs: Range<usize>,
-}
-
-/// A controller with its places in the flat state.
-#[derive(Debug, Clone)]
-pub(crate) struct PlannedController {
-    pub name: String,
-    pub controller: LocalController,
-    pub measures: Vec<Source>,
-    pub measured_names: Vec<String>,
-    /// From where the first measured value counts: 0 degC for a temperature.
-    pub zero: f64,
-    /// Signals of its set points.
-    pub set_points: Range<usize>,
-    pub acts_on: Vec<SignalId>,
-    /// Smallest and largest value of those signals.
-    pub limits: Vec<(f64, f64)>,
-    /// 0 is every step.
-    pub interval: Time,
-    pub state: Range<usize>,
-}
-
-/// A pump that a controller drives.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SwingWatch {
-    pub controller: usize,
-    pub edge: usize,
-    /// Whether the first set point is its flow.
-    pub holds_flow: bool,
-    /// Whether temperatures are in the loop.
-    pub slow: bool,
-}
-
-/// A sensor and what it measures.
-#[derive(Debug, Clone)]
-pub(crate) struct PlannedSensor {
-    pub name: String,
-    /// Unit of its channel.
-    pub unit: String,
-    pub sensor: Sensor,
-    pub measures: Source,
-    /// What is subtracted.
-    pub minus: Option<Source>,
 }
 
 /// Pairs of nodes of which the smallest pressure difference is of interest.

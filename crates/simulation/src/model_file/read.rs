@@ -9,6 +9,7 @@ mod fluids;
 mod ground;
 mod pipe_types;
 mod plants;
+mod sensors;
 mod station_types;
 mod three_way_valves;
 
@@ -24,7 +25,6 @@ use crate::model::*;
 use crate::table::Tables;
 use crate::temperatures::Temperatures;
 use crate::wording::refused;
-use anergy_control::sensor::SensorEntry;
 use anergy_core::medium::Medium;
 use jiff::Timestamp;
 use std::collections::{HashMap, HashSet};
@@ -348,20 +348,6 @@ impl ModelReader<'_> {
 
     fn check_temperature(&mut self, range: &Temperatures, field: &str, t_k: f64, place: &Place) {
         self.reader.problems.extend(range.problem("", field, t_k, place));
-    }
-
-    fn sensors(&mut self) -> Vec<SensorSpec> {
-        let read = |reader: &mut Self, tree: Tree| {
-            let what = format!("sensor \"{}\"", tree.text("id").unwrap_or("?"));
-            let (entry, table) = reader.reader.read::<SensorEntry>(&what, &tree)?;
-            let place = place(&what, &tree, &table);
-            if entry.id.is_empty() {
-                reader.reader.report(Diagnostic::new("sensor: id is empty", place.of("id")));
-                return None;
-            }
-            Some(SensorSpec { entry, place })
-        };
-        self.items("sensor").into_iter().filter_map(|tree| read(self, tree)).collect()
     }
 
     fn prescriptions(&mut self) -> Vec<PrescriptionSpec> {
