@@ -24,15 +24,25 @@ pub(super) struct Case<'a> {
     pub hot: Vec<f64>,
 }
 
-/// `det(1 + k L(i omega))`.
-fn determinant(case: &Case, factor: f64, omega: f64) -> C64 {
+/// `det(1 + k L(i omega))`: logarithm of its size, and its direction.
+fn determinant(case: &Case, factor: f64, omega: f64) -> (f64, C64) {
     let s = C64::new(0.0, omega);
+    // As a product, so that many large factors do not overflow.
+    let gather = |(size, direction): (f64, C64), value: C64| {
+        let norm = value.norm();
+        (size + norm.ln(), direction * value / norm)
+    };
+    let start = (0.0, C64::new(1.0, 0.0));
     match &case.lambdas {
         Some(lambdas) => {
             let common = case.loops.common(s) * factor;
-            lambdas.iter().map(|lambda| lambda * common + 1.0).product()
+            lambdas.iter().map(|lambda| lambda * common + 1.0).fold(start, gather)
         }
-        None => case.loops.closed(s, factor).determinant(),
+        None => {
+            let lu = case.loops.closed(s, factor).lu();
+            let sign: C64 = lu.p().determinant();
+            lu.u().diagonal().iter().copied().chain([sign]).fold(start, gather)
+        }
     }
 }
 
@@ -43,8 +53,8 @@ pub(super) fn count_growing(case: &Case, factor: f64) -> i64 {
     let (_, slowest) = case.loops.times_s();
     let mut low = 1e-4 / slowest;
     let order = |factor: f64, omega: f64| {
-        let size = |omega| determinant(case, factor, omega).norm();
-        (size(0.1 * omega) / size(omega)).log10()
+        let size = |omega| determinant(case, factor, omega).0;
+        (size(0.1 * omega) - size(omega)) / std::f64::consts::LN_10
     };
     // With a huge scale every loop with an integrator shows its pole.
     let poles = order(HUGE, low).round();
@@ -60,11 +70,11 @@ pub(super) fn count_growing(case: &Case, factor: f64) -> i64 {
         if near { HOT_STEP } else { LONGEST_STEP }
     };
     let mut phase = 0.0;
-    let mut at = (low, determinant(case, factor, low));
+    let mut at = (low, determinant(case, factor, low).1);
     let mut step = LONGEST_STEP;
     while at.0 < high {
         let next = (at.0 * step).min(high);
-        let value = determinant(case, factor, next);
+        let value = determinant(case, factor, next).1;
         let turn = (value / at.1).arg();
         if turn.abs() > 0.7 && step > 1.0 + 1e-8 {
             step = 1.0 + 0.3 * (step - 1.0);

@@ -58,6 +58,10 @@ pub(super) struct Found {
 struct Scalar<'a> {
     f: Box<dyn Fn(C64) -> C64 + 'a>,
     times: usize,
+    /// Its values at the frequencies looked at.
+    values: Vec<C64>,
+    /// Whether crossings are wanted to the last digit.
+    exact: bool,
 }
 
 /// Analyses a group of loops.
@@ -68,9 +72,9 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         scaled.complex_eigenvalues().iter().copied().collect()
     });
     let mut case = Case { loops, lambdas, hot: Vec::new() };
-    let scalars = scalars(&case);
-    let exact = case.lambdas.is_some();
     let omegas = frequencies(loops);
+    let scalars = scalars(&case, &omegas);
+    let exact = case.lambdas.is_some();
     let mut starts: Vec<(Limit, &Scalar)> = Vec::new();
     for scalar in &scalars {
         starts.extend(crossing(scalar, &omegas).map(|limit| (limit, scalar)));
@@ -130,7 +134,7 @@ fn keep(roots: &mut Vec<Root>, s: C64, times: usize) {
 }
 
 /// The scalar equations: exact for uniform loops, otherwise starts.
-fn scalars<'a>(case: &'a Case) -> Vec<Scalar<'a>> {
+fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
     let loops = case.loops;
     let n = loops.len();
     if let Some(lambdas) = &case.lambdas {
@@ -141,9 +145,13 @@ fn scalars<'a>(case: &'a Case) -> Vec<Scalar<'a>> {
                 None => all.push((*lambda, 1)),
             }
         }
+        let common: Vec<C64> =
+            omegas.iter().map(|omega| loops.common(C64::new(0.0, *omega))).collect();
         let scalar = |(lambda, times): (C64, usize)| Scalar {
             f: Box::new(move |s| lambda * loops.common(s)),
             times,
+            values: common.iter().map(|value| lambda * value).collect(),
+            exact: true,
         };
         return all.into_iter().map(scalar).collect();
     }
@@ -152,6 +160,8 @@ fn scalars<'a>(case: &'a Case) -> Vec<Scalar<'a>> {
     let at = C64::new(0.0, 2.0 / slowest);
     let matrix = loops.matrix(at);
     let eigenvalues = matrix.clone().eigenvalues().unwrap_or_else(|| DVector::zeros(0));
+    let on_grid: Vec<DMatrix<C64>> =
+        omegas.iter().map(|omega| loops.matrix(C64::new(0.0, *omega))).collect();
     let mut scalars = Vec::new();
     for lambda in eigenvalues.iter().filter(|lambda| lambda.norm() > 0.0) {
         let shift = *lambda * C64::new(1.0 + 1e-7, 1e-7);
@@ -162,8 +172,11 @@ fn scalars<'a>(case: &'a Case) -> Vec<Scalar<'a>> {
         if norm.norm() < 1e-12 {
             continue;
         }
+        let through = |matrix: &DMatrix<C64>| left.dotc(&(matrix * &right)) / norm;
+        let values = on_grid.iter().map(through).collect();
+        let (left, right) = (left.clone(), right.clone());
         let f = move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm;
-        scalars.push(Scalar { f: Box::new(f), times: 1 });
+        scalars.push(Scalar { f: Box::new(f), times: 1, values, exact: false });
     }
     scalars
 }
@@ -202,28 +215,35 @@ fn frequencies(loops: &Loops) -> Vec<f64> {
 fn crossing(scalar: &Scalar, omegas: &[f64]) -> Option<Limit> {
     let f = |omega: f64| (scalar.f)(C64::new(0.0, omega));
     let mut best: Option<Limit> = None;
-    let mut before = (omegas[0], f(omegas[0]));
+    let mut before = (omegas[0], scalar.values[0]);
     let consider = |omega: f64, value: C64, best: &mut Option<Limit>| {
         let factor = 1.0 / value.norm();
         if value.re < 0.0 && best.is_none_or(|best| factor < best.factor) {
             *best = Some(Limit { factor, omega_rad_s: omega });
         }
     };
-    for &omega in &omegas[1..] {
-        let now = (omega, f(omega));
+    for (&omega, &value) in omegas.iter().zip(&scalar.values).skip(1) {
+        let now = (omega, value);
         if before.1.im * now.1.im <= 0.0 && (before.1.re < 0.0 || now.1.re < 0.0) {
             let (mut low, mut high) = (before, now);
-            for _ in 0..60 {
-                let middle = 0.5 * (low.0 + high.0);
-                let value = f(middle);
-                if low.1.im * value.im <= 0.0 {
-                    high = (middle, value);
-                } else {
-                    low = (middle, value);
+            if scalar.exact {
+                for _ in 0..60 {
+                    let middle = 0.5 * (low.0 + high.0);
+                    let value = f(middle);
+                    if low.1.im * value.im <= 0.0 {
+                        high = (middle, value);
+                    } else {
+                        low = (middle, value);
+                    }
                 }
+            } else {
+                // A start only: straight between the two frequencies.
+                let share = low.1.im / (low.1.im - high.1.im);
+                let between = low.1 + (high.1 - low.1) * share;
+                high = (low.0 + (high.0 - low.0) * share, between);
             }
             // Where the phase jumps, nothing crosses.
-            if high.1.im.abs() < 1e-6 * high.1.norm() {
+            if high.1.im.abs() <= 1e-6 * high.1.norm() {
                 consider(high.0, high.1, &mut best);
             }
         }
