@@ -39,6 +39,7 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python examples/three-houses/run.py
 	$(BIN)/python examples/town/run.py
 	$(BIN)/python examples/cold-plug/run.py
+	$(BIN)/python examples/pump-hunting/run.py
 	$(BIN)/python examples/grids/run.py
 	$(BIN)/python examples/rse-facility/run.py
 

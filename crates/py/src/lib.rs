@@ -34,8 +34,10 @@ mod _core {
     const __version__: &str = env!("CARGO_PKG_VERSION");
 
     /// Names and texts of the models that come with the package.
-    const EXAMPLES: &[(&str, &str)] =
-        &[("three-houses", include_str!("../../../examples/three-houses/model.toml"))];
+    const EXAMPLES: &[(&str, &str)] = &[
+        ("three-houses", include_str!("../../../examples/three-houses/model.toml")),
+        ("pump-hunting", include_str!("../../../examples/pump-hunting/n2.toml")),
+    ];
 
     /// schema()
     /// --

@@ -1,6 +1,7 @@
 //! `anergy.Model`: a model file, loaded.
 
 mod parameters;
+mod stability;
 mod text;
 
 pub use text::load_model;

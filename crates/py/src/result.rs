@@ -226,7 +226,10 @@ impl RunResult {
         python(slf.py(), "anergy._export", "result_to_xarray")?.call1((slf, channels))
     }
 
-    /// Plots channels over time with matplotlib.
+    /// Plots channels over time with matplotlib, shaded where their components are blocked or swing.
+    ///
+    /// From the events `blocked`, `oscillating` and `hunting` of the component of a channel, and of
+    /// what stands at the same place.
     ///
     /// Parameters
     /// ----------

@@ -8,7 +8,7 @@ import pytest
 
 
 def test_examples():
-    assert anergy.examples.names() == ["three-houses"]
+    assert anergy.examples.names() == ["three-houses", "pump-hunting"]
     source = Path(__file__).parents[3] / "examples" / "three-houses" / "model.toml"
     assert anergy.examples.text("three-houses") == source.read_text()
     with pytest.raises(KeyError, match="did you mean `three-houses`"):

@@ -55,7 +55,7 @@ function startMap(data, clock, plots) {
   const colour = (t) => rampColour((t - tMin) / (tMax - tMin));
 
   const intervals = new Map();
-  for (const interval of data.blocked) {
+  for (const interval of data.flagged.filter(({ kind }) => kind === "blocked")) {
     if (!intervals.has(interval.component)) intervals.set(interval.component, []);
     intervals.get(interval.component).push(interval);
   }

@@ -1,4 +1,4 @@
-// The plots: linked in time, with chosen series, blocked intervals and the time of the clock.
+// The plots: linked in time, with chosen series, flagged intervals and the time of the clock.
 "use strict";
 
 const COLOURS = 8;
@@ -84,11 +84,11 @@ function startPlots(data, clock) {
     const shown = () =>
       new Set(curves.filter((_, i) => u.series[i + 1].show).map(({ series }) => series.key));
 
-    /** Blocked intervals of the shown places: a tint, and a lane on top in the colour of the place. */
-    function drawBlocked() {
+    /** Flagged intervals of the shown places: a tint, and a lane on top in the colour of the place. */
+    function drawFlagged() {
       const keys = shown();
       const { ctx, bbox } = u;
-      const lanes = [...new Set(data.blocked.map((b) => b.key))].filter((key) => keys.has(key));
+      const lanes = [...new Set(data.flagged.map((b) => b.key))].filter((key) => keys.has(key));
       ctx.save();
       ctx.beginPath();
       ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
@@ -98,19 +98,27 @@ function startPlots(data, clock) {
         const b = u.valToPos((to ?? data.end_s) / unit[1], "x", true);
         return [a, Math.max(b - a, uPlot.pxRatio)];
       };
-      const mine = data.blocked.filter((b) => keys.has(b.key));
-      ctx.fillStyle = css("--blocked-tint");
-      ctx.beginPath();
-      for (const interval of mine) {
-        const [a, width] = place(interval);
-        ctx.rect(a, bbox.top, width, bbox.height);
+      const mine = data.flagged.filter((b) => keys.has(b.key));
+      for (const blocked of [true, false]) {
+        ctx.fillStyle = css(blocked ? "--blocked-tint" : "--swing-tint");
+        ctx.beginPath();
+        for (const interval of mine.filter(({ kind }) => (kind === "blocked") === blocked)) {
+          const [a, width] = place(interval);
+          ctx.rect(a, bbox.top, width, bbox.height);
+        }
+        ctx.fill();
       }
-      ctx.fill();
       const lane = Math.min(4, 24 / lanes.length) * uPlot.pxRatio;
       for (const interval of mine) {
         const [a, width] = place(interval);
-        ctx.fillStyle = colourOf(interval.key)();
-        ctx.fillRect(a, bbox.top + lanes.indexOf(interval.key) * lane * 1.25, width, lane);
+        const middle = bbox.top + (lanes.indexOf(interval.key) * 1.25 + 0.5) * lane;
+        ctx.strokeStyle = colourOf(interval.key)();
+        ctx.lineWidth = lane;
+        ctx.setLineDash(interval.kind === "oscillating" ? [6 * uPlot.pxRatio, 4 * uPlot.pxRatio] : []);
+        ctx.beginPath();
+        ctx.moveTo(a, middle);
+        ctx.lineTo(a + width, middle);
+        ctx.stroke();
       }
       ctx.restore();
     }
@@ -166,7 +174,7 @@ function startPlots(data, clock) {
           { ...look, label: axis, labelFont: FONT, labelSize: 20, size: 58, space: 34, values: numbers },
         ],
         hooks: {
-          drawAxes: [() => curves.length && drawBlocked()],
+          drawAxes: [() => curves.length && drawFlagged()],
           setCursor: [() => curves.length && readValues()],
           setScale: [(_, key) => key === "x" && curves.length && placeMarker()],
           setSize: [() => curves.length && placeMarker()],

@@ -4,7 +4,7 @@ use crate::display::{self, Display};
 use crate::escape::{self, html};
 use crate::lookup::Lookup;
 use crate::map::{self, Map, MapData};
-use crate::series::{self, Blocked, Plot, Plots};
+use crate::series::{self, Flagged, Plot, Plots};
 use crate::sites::SiteGraph;
 use crate::tables;
 use anergy_core::recorder::{Event, Recording, Severity};
@@ -33,7 +33,7 @@ struct Data<'a> {
     /// Times of the points of the plots, s, base64 of 64-bit floats.
     times: String,
     plots: &'a [Plot],
-    blocked: &'a [Blocked],
+    flagged: &'a [Flagged],
     map: &'a MapData,
 }
 
@@ -114,7 +114,7 @@ struct Parts<'a> {
     recording: &'a Recording,
     lookup: Lookup<'a>,
     sites: SiteGraph,
-    blocked: Vec<Blocked>,
+    flagged: Vec<Flagged>,
     density_kg_m3: f64,
     plots: Plots,
     map: Map,
@@ -124,11 +124,11 @@ impl<'a> Parts<'a> {
     fn new(recording: &'a Recording) -> Self {
         let lookup = Lookup::new(recording);
         let sites = SiteGraph::new(&lookup);
-        let blocked = series::blocked(&lookup, &sites);
+        let flagged = series::flagged(&lookup, &sites);
         let density_kg_m3 = display::density_kg_m3(&recording.header.settings);
-        let plots = series::plots(&lookup, &sites, &blocked, density_kg_m3);
+        let plots = series::plots(&lookup, &sites, &flagged, density_kg_m3);
         let map = map::map(&lookup, &sites);
-        Self { recording, lookup, sites, blocked, density_kg_m3, plots, map }
+        Self { recording, lookup, sites, flagged, density_kg_m3, plots, map }
     }
 
     fn data(&self) -> Data<'_> {
@@ -144,7 +144,7 @@ impl<'a> Parts<'a> {
             },
             times: escape::base64_f64(&self.plots.times),
             plots: &self.plots.plots,
-            blocked: &self.blocked,
+            flagged: &self.flagged,
             map: &self.map.data,
         }
     }
@@ -267,8 +267,17 @@ impl<'a> Parts<'a> {
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         let mut note = |text: &str| notes.push(text.to_owned());
-        if !self.blocked.is_empty() {
-            note("Shaded: a station that is drawn is blocked; the bar on top has its colour.");
+        let is = |blocked: bool| self.flagged.iter().any(|f| (f.kind == "blocked") == blocked);
+        if is(true) {
+            note(
+                "Shaded in orange: a station that is drawn is blocked; the bar on top has its colour.",
+            );
+        }
+        if is(false) {
+            note(
+                "Shaded in violet: a pump of a place that is drawn hunts against others, with a full bar on \
+                 top, or oscillates alone, with a broken bar.",
+            );
         }
         note(
             "Drag in a plot to zoom all of them, double-click to show all. A click sets the time of the map.",

@@ -1,4 +1,4 @@
-//! Which series the plots offer, which of them are shown first, and the blocked intervals.
+//! Which series the plots offer, which of them are shown first, and the intervals that are shaded.
 
 use crate::decimate::Buckets;
 use crate::display::Display;
@@ -60,12 +60,14 @@ pub struct Series {
     pub data: String,
 }
 
-/// A time during which an interface could not do what was asked of it.
+/// A time during which an interface could not do what was asked of it, or a pump swung.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Blocked {
-    /// Interface.
+pub struct Flagged {
+    /// `blocked`, `oscillating`, `hunting`.
+    pub kind: &'static str,
+    /// Interface or pump.
     pub component: String,
-    /// Place of the interface.
+    /// Place of it.
     pub key: String,
     /// Start, s.
     pub from: f64,
@@ -96,7 +98,7 @@ struct Draft<'a> {
 }
 
 /// Chooses, ranks and decimates.
-pub fn plots(lookup: &Lookup, sites: &SiteGraph, blocked: &[Blocked], density_kg_m3: f64) -> Plots {
+pub fn plots(lookup: &Lookup, sites: &SiteGraph, flagged: &[Flagged], density_kg_m3: f64) -> Plots {
     let collector = Collector { lookup, sites };
     let flow = Display::flow(density_kg_m3);
     let (flows, note) = collector.flows();
@@ -131,7 +133,7 @@ pub fn plots(lookup: &Lookup, sites: &SiteGraph, blocked: &[Blocked], density_kg
     let count: usize = drafts.iter().flat_map(|plot| &plot.3).map(offered).sum();
     let points = (VALUE_BUDGET / count.max(1)).clamp(MIN_POINTS, MAX_POINTS);
     let buckets = Buckets::new(lookup.rows, points);
-    let stuck: BTreeSet<&str> = blocked.iter().map(|interval| interval.key.as_str()).collect();
+    let stuck: BTreeSet<&str> = flagged.iter().map(|interval| interval.key.as_str()).collect();
     let finish = |(id, title, note, drafts): (_, _, &'static str, Vec<Draft>)| Plot {
         id,
         title,
@@ -182,7 +184,7 @@ fn panel(draft: Draft, rows: usize, buckets: &Buckets, stuck: &BTreeSet<&str>) -
     Panel { title: draft.title, display: draft.display, series, left_out }
 }
 
-/// Places with their number of series, the most telling first: blocked ones, then by the largest
+/// Places with their number of series, the most telling first: flagged ones, then by the largest
 /// change of a series in time, then by magnitude.
 fn rank(sources: &[Source], rows: usize, stuck: &BTreeSet<&str>) -> Vec<(String, usize)> {
     struct Score {
@@ -292,41 +294,49 @@ impl<'a> Collector<'a, '_> {
     }
 }
 
-/// Blocked intervals: from the events of a component, which have exact times, or else from its flag.
-pub fn blocked(lookup: &Lookup, sites: &SiteGraph) -> Vec<Blocked> {
-    let mut intervals: Vec<Blocked> = Vec::new();
-    let mut open = |component: &str, from: f64| {
+/// Flagged intervals: from the events of a component, which have exact times; blocked ones without
+/// events from the flag of the interface.
+pub fn flagged(lookup: &Lookup, sites: &SiteGraph) -> Vec<Flagged> {
+    let mut intervals: Vec<Flagged> = Vec::new();
+    let mut open = |kind, component: &str, from: f64| {
         let (key, component) = (sites.place_of(component).to_owned(), component.to_owned());
-        intervals.push(Blocked { component, key, from, to: None });
+        intervals.push(Flagged { kind, component, key, from, to: None });
         intervals.len() - 1
     };
-    let mut running: BTreeMap<&str, Option<usize>> = BTreeMap::new();
+    let mut running: BTreeMap<(&str, &str), Option<usize>> = BTreeMap::new();
     let mut ends: Vec<(usize, f64)> = Vec::new();
     for event in &lookup.recording.events {
-        let time = event.time.as_s();
-        match event.kind.as_str() {
-            "blocked" => {
-                let interval = running.entry(&event.component).or_insert(None);
-                if interval.is_none() {
-                    *interval = Some(open(&event.component, time));
-                }
+        let (time, component) = (event.time.as_s(), event.component.as_str());
+        let (begins, ended) = match event.kind.as_str() {
+            "blocked" => (Some("blocked"), None),
+            "unblocked" => (None, Some("blocked")),
+            "oscillating" => (Some("oscillating"), None),
+            "oscillating_ended" => (None, Some("oscillating")),
+            // What hunts has swung alone before, and no event says that this is over.
+            "hunting" => (Some("hunting"), Some("oscillating")),
+            "hunting_ended" => (None, Some("hunting")),
+            _ => continue,
+        };
+        if let Some(kind) = ended {
+            let interval = running.entry((component, kind)).or_insert(None);
+            ends.extend(interval.take().map(|interval| (interval, time)));
+        }
+        if let Some(kind) = begins {
+            let interval = running.entry((component, kind)).or_insert(None);
+            if interval.is_none() {
+                *interval = Some(open(kind, component, time));
             }
-            "unblocked" => {
-                let interval = running.entry(&event.component).or_insert(None);
-                ends.extend(interval.take().map(|interval| (interval, time)));
-            }
-            _ => {}
         }
     }
     for component in lookup.components(Interfaces, "blocked") {
         let Some(column) = lookup.column(component, "blocked") else { continue };
-        if running.contains_key(component) {
+        if running.contains_key(&(component, "blocked")) {
             continue;
         }
         let mut since = None;
         for (row, &time) in lookup.times().iter().enumerate() {
             match (value(column, row) > 0.5, since) {
-                (true, None) => since = Some(open(component, time)),
+                (true, None) => since = Some(open("blocked", component, time)),
                 (false, Some(interval)) => {
                     ends.push((interval, time));
                     since = None;

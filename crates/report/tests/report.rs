@@ -2,7 +2,8 @@
 
 mod synthetic;
 
-use anergy_core::recorder::Recording;
+use anergy_core::clock::Time;
+use anergy_core::recorder::{Event, Recording, Severity};
 use anergy_report::html;
 use serde_json::Value;
 
@@ -49,8 +50,8 @@ fn map_plots_and_tables_are_there() {
     let flows = &data["plots"][0]["panels"][0]["series"];
     assert_eq!(flows.as_array().unwrap().len(), 6, "three flows and three requests");
     assert_eq!(data["plots"][1]["panels"][1]["series"][0]["name"], "sf1");
-    assert_eq!(data["blocked"][0]["from"], 60.0);
-    assert_eq!(data["blocked"][0]["to"], 2245.0);
+    assert_eq!(data["flagged"][0]["from"], 60.0);
+    assert_eq!(data["flagged"][0]["to"], 2245.0);
     assert!(!page.contains("data-notice"));
 }
 
@@ -150,4 +151,48 @@ fn vendored_uplot_is_the_stated_one() {
         assert_eq!(content.len(), bytes, "{file}");
         assert!(readme.contains(&format!("| `{file}` | {bytes} |")), "{file}");
     }
+}
+
+#[test]
+fn spans_of_swinging_pumps_are_flagged() {
+    let mut recording = synthetic::three_houses();
+    recording.events.clear();
+    for (time_s, kind) in [
+        (100.0, "oscillating"),
+        (130.0, "hunting"),
+        (300.0, "hunting_ended"),
+        (400.0, "oscillating"),
+        (500.0, "oscillating_ended"),
+        (600.0, "hunting"),
+    ] {
+        recording.events.push(Event {
+            time: Time::from_s(time_s).unwrap(),
+            severity: Severity::Warning,
+            component: "sf2.feed_in_pump".to_owned(),
+            kind: kind.to_owned(),
+            message: String::new(),
+        });
+    }
+    let page = html(&recording);
+    assert!(page.contains("Shaded in violet"));
+    assert!(!html(&synthetic::three_houses()).contains("Shaded in violet"));
+    let spans: Vec<_> = data(&page)["flagged"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|span| span["kind"] != "blocked")
+        .map(|span| {
+            assert_eq!(span["key"], "sf2");
+            (span["kind"].clone(), span["from"].as_f64(), span["to"].as_f64())
+        })
+        .collect();
+    assert_eq!(
+        spans,
+        [
+            ("oscillating".into(), Some(100.0), Some(130.0)),
+            ("hunting".into(), Some(130.0), Some(300.0)),
+            ("oscillating".into(), Some(400.0), Some(500.0)),
+            ("hunting".into(), Some(600.0), None),
+        ]
+    );
 }

@@ -9,7 +9,7 @@ simulation to be stepped from outside. All quantities are in SI, their names end
 >>> flow = 60 * result["sf1.station.m_flow_kg_s"]  # l/min
 >>> flow[[30, -1]].round(2).tolist()
 [0.78, 3.34]
->>> result.events[0]["message"]
+>>> result.events[0]["message"].partition(";")[0]
 'sf1.station is blocked: it delivers 0.78 of 3.50 l/min wanted'
 """
 
@@ -34,13 +34,16 @@ from anergy.errors import (
     SnapshotError,
     UnknownNameError,
 )
+from anergy.stability import BlockingMap, Mode, Stability
 from anergy.steady import Steady, Table
 
 __all__ = [
     "AnergyError",
+    "BlockingMap",
     "ConvergenceError",
     "Handle",
     "Interrupted",
+    "Mode",
     "Model",
     "ModelError",
     "OutOfRangeError",
@@ -50,6 +53,7 @@ __all__ = [
     "Simulation",
     "Snapshot",
     "SnapshotError",
+    "Stability",
     "Steady",
     "Table",
     "UnknownNameError",

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from anergy._core import Result
     from anergy.steady import Table
 
+SHADES = {"blocked": "#e08a00", "oscillating": "#6b5aa8", "hunting": "#b4508c"}
+"""Colours of what events begin."""
+ENDS = {"unblocked": "blocked", "oscillating_ended": "oscillating", "hunting_ended": "hunting"}
+"""What events end."""
+
 
 def _optional(module: str, extra: str) -> Any:
     try:
@@ -52,19 +57,59 @@ def result_to_xarray(result: Result, channels: Sequence[str] | None) -> xarray.D
     return dataset
 
 
+def new_axes(width: float = 7.0, height: float = 4.5) -> Axes:
+    """Axes of a new figure, width and height in inches."""
+    pyplot = _optional("matplotlib.pyplot", "plot")
+    axes: Axes = pyplot.figure(figsize=(width, height), layout="constrained").add_subplot()
+    return axes
+
+
 def plot(result: Result, channels: Sequence[str], ax: Axes | None) -> Axes:
-    """Draws channels of one unit into axes."""
+    """Draws channels of one unit into axes, and shades what is blocked or swings of their components."""
     units = {result.unit(name) for name in channels}
     if len(units) != 1:
         found = ", ".join(sorted(units)) or "no channel"
         raise ValueError(f"plot needs one or more channels of one unit, not: {found}")
-    axes: Axes = ax or _optional("matplotlib.pyplot", "plot").figure().add_subplot()
+    axes = ax or new_axes()
     for name in channels:
         axes.plot(result.time_s, result[name], label=name)
+    seen = set()
+    for kind, component, start_s, end_s in flagged(result):
+        if any(_concerns(component, name) for name in channels):
+            label = kind if kind not in seen else None
+            seen.add(kind)
+            axes.axvspan(start_s, end_s, color=SHADES[kind], alpha=0.15, linewidth=0, label=label)
     axes.set_xlabel("time in s")
     axes.set_ylabel(units.pop())
-    axes.legend()
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False, fontsize=9)
     return axes
+
+
+def flagged(result: Result) -> list[tuple[str, str, float, float]]:
+    """Spans of events: kind, component, start and end, s. What is not over ends with the run."""
+    if len(result.time_s) == 0:
+        return []
+    running: dict[tuple[str, str], float] = {}
+    spans = []
+    for event in result.events:
+        component, kind, time_s = event["component"], event["kind"], event["time_s"]
+        if kind in SHADES:
+            # What hunts has oscillated before, and no event says that this is over.
+            before = running.pop((component, "oscillating"), None) if kind == "hunting" else None
+            if before is not None:
+                spans.append(("oscillating", component, before, time_s))
+            running.setdefault((component, kind), time_s)
+        elif kind in ENDS and (start := running.pop((component, ENDS[kind]), None)) is not None:
+            spans.append((ENDS[kind], component, start, time_s))
+    end_s = float(result.time_s[-1])
+    spans += [(kind, component, start, end_s) for (component, kind), start in running.items()]
+    return sorted(spans, key=lambda span: span[2])
+
+
+def _concerns(component: str, channel: str) -> bool:
+    """Whether a channel belongs to a component, a part of it, or the whole that it is a part of."""
+    one, other = component.removesuffix(".station"), channel.rpartition(".")[0].removesuffix(".station")
+    return one == other or one.startswith(f"{other}.") or other.startswith(f"{one}.")
 
 
 def _names(channels: Sequence[str]) -> list[str]:

@@ -2,7 +2,7 @@
 
 >>> import anergy
 >>> anergy.examples.names()
-['three-houses']
+['three-houses', 'pump-hunting']
 >>> anergy.examples.load("three-houses").name
 'three houses: pump blocking'
 """
