@@ -87,7 +87,10 @@ pub fn print_key_results(summary: &Value) {
         .iter()
         .map(|result| {
             let text = |key: &str| result[key].as_str().unwrap_or_default().to_owned();
-            let value = result["value"].as_f64().map_or("-".into(), |value| format!("{value:.3}"));
+            // What rounds to nothing has no sign.
+            let shown = |value: f64| if value.abs() < 5e-4 { 0.0 } else { value };
+            let value = result["value"].as_f64().map(shown);
+            let value = value.map_or("-".into(), |value| format!("{value:.3}"));
             vec![text("component"), text("label"), value, text("unit")]
         })
         .collect();
