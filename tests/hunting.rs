@@ -324,3 +324,10 @@ fn a_supply_temperature_behind_a_pipe_has_the_limit_that_simulation_finds() {
     let (period_s, _) = wave(&above[6000..16_000], 1.0);
     assert!((period_s / critical_period_s - 1.0).abs() < 0.05, "{period_s} {critical_period_s}");
 }
+
+#[test]
+fn a_gain_of_the_wrong_sign_has_no_critical_gain() {
+    let found = analysis(&model(1, &[("gain = 2.4", "gain = -2.4")]));
+    assert_eq!(found.controllers[0].critical_gain, Some(0.0));
+    assert!(!found.controllers[0].stable && found.controllers[0].critical_period_s.is_none());
+}

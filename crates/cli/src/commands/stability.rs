@@ -116,6 +116,9 @@ fn print_loops(found: &Stability) {
         .map(|c| {
             let verdict = match (c.open, c.stable, c.critical_gain) {
                 (Some(open), ..) => open.to_owned(),
+                (None, false, Some(0.0)) => {
+                    "runs away at any gain: check sign and pairing".to_owned()
+                }
                 (None, false, _) => "hunts".to_owned(),
                 (None, true, Some(critical)) => {
                     format!("stable, {:.1} times its gain to the limit", critical / c.gain)

@@ -43,7 +43,16 @@ impl Builder<'_> {
         place: &Place,
     ) -> Option<usize> {
         let found = plan.channels.iter().position(|channel| channel.name == name);
-        if found.is_none() {
+        let of_sensor = name.strip_suffix(".value");
+        let of_sensor = self.model.sensors.iter().find(|s| Some(s.entry.id.as_str()) == of_sensor);
+        if found.is_none() && of_sensor.is_some() {
+            // A controller's sensor is there, and wrong.
+            if what.starts_with("sensor") {
+                let message = format!("{what} measures \"{name}\", the reading of a sensor");
+                let hint = "a sensor measures what is there: name the channel of that sensor";
+                self.report(message, place.of(field), Some(hint.into()));
+            }
+        } else if found.is_none() {
             let hint = did_you_mean(name, plan.channels.iter().map(|c| c.name.as_str()));
             let message = format!("{what} measures \"{name}\", which does not exist");
             let hint = hint.or_else(|| {

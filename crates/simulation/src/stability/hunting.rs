@@ -48,7 +48,7 @@ pub struct LoopMargin {
     /// Its gain, actuator unit per SI unit of what it measures.
     pub gain: f64,
     /// Its gain when all gains of its group are scaled to the limit; `None` without a limit, or when its
-    /// loop is open.
+    /// loop is open; 0 where it grows at any gain, because of its sign or its pairing.
     pub critical_gain: Option<f64>,
     /// Period at that limit, s.
     pub critical_period_s: Option<f64>,
@@ -366,8 +366,12 @@ fn judge(
         let margin = &mut hunting.controllers[closed[k].controller];
         margin.group.clone_from(&names);
         margin.stable = found.growing == 0;
-        margin.critical_gain = found.limit.map(|limit| margin.gain * limit.factor);
-        margin.critical_period_s = found.limit.map(|limit| TAU / limit.omega_rad_s);
+        // Without the sign of a gain that is none.
+        margin.critical_gain = found.limit.map(|limit| margin.gain * limit.factor + 0.0);
+        margin.critical_period_s = found
+            .limit
+            .filter(|limit| limit.omega_rad_s > 0.0)
+            .map(|limit| TAU / limit.omega_rad_s);
         margin.relative_gain = relative.as_ref().map(|relative| relative[i]);
         let alone = Group::new(plan, state, closed, &[k], answers).analyse(plan, state);
         let limit = alone.and_then(|alone| alone.limit);

@@ -26,6 +26,9 @@ const NO_PERIOD: f64 = 1e-3;
 /// Steps of the scale from the limit to the present gains, each by this factor at most.
 const SCALE_STEP: f64 = 1.15;
 
+/// A scale at which loops of the right sign rest.
+const NO_GAIN: f64 = 1e-6;
+
 /// A mode of the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Root {
@@ -113,6 +116,12 @@ pub(super) fn analyse(loops: &Loops) -> Found {
     roots.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
     limits.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let limit = if exact { limits.first().copied() } else { checked(&case, &limits, &omegas) };
+    // What grows with hardly any gain has the wrong sign.
+    let limit = if count_growing(&case, NO_GAIN) > 0 {
+        Some(Limit { factor: 0.0, omega_rad_s: 0.0 })
+    } else {
+        limit
+    };
     Found { roots, limit, growing }
 }
 
