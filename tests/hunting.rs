@@ -157,7 +157,9 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
             let stable = expected == 0.0;
             assert_eq!(analysis(&model).controllers[0].stable, stable, "N = {n}, K = {k}");
             let (flows, events) = run_flows(&model, 1200.0, 1800.0);
-            let size = peak_to_peak(&flows[0]);
+            let sizes: Vec<f64> = flows.iter().map(|flow| peak_to_peak(flow)).collect();
+            println!("N = {n}, K = {k}: {sizes:.2?} l/min peak to peak");
+            let size = sizes[0];
             let said = |kind: &str| events.iter().any(|event| event.kind == kind);
             if stable {
                 assert!(size < 0.02, "N = {n}, K = {k}: {size}");
@@ -166,8 +168,8 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
             }
             assert_eq!(said("hunting"), n > 1, "N = {n}, K = {k}: {events:?}");
             assert!(said("hunting") || said("oscillating"));
-            // The single pump: 2.8 by Euler steps of 0.1 s, which damp; 3.3 here. Three pumps swing in turn
-            // here, not one against two: in the table the last two are alike to the last digit.
+            // The single pump: 2.8 in the table. The same loop on a grid of 0.005 s with updates every 0.1 s
+            // has 3.29, with continuous control 3.11, by Euler steps of 0.1 s, which damp, 3.01.
             let tolerance = [0.2, 0.03, 0.05][n - 1];
             assert!(
                 expected.is_nan() || (size / expected - 1.0).abs() <= tolerance,
