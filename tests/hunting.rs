@@ -333,3 +333,20 @@ fn a_gain_of_the_wrong_sign_has_no_critical_gain() {
     assert_eq!(found.controllers[0].critical_gain, Some(0.0));
     assert!(!found.controllers[0].stable && found.controllers[0].critical_period_s.is_none());
 }
+
+#[test]
+fn a_controller_on_the_set_point_of_another_is_not_judged_without_a_word() {
+    let outer = "[[controller]]\nid = \"outer\"\nkind = \"pi\"\nmeasures = \"town.hot.p_pa\"\n\
+                 acts_on = \"pi1.set_point\"\nset_point = 151000\ngain = 1e-6\nintegral_time_s = 60\n\
+                 output_min = 0\noutput_max = 0.1\n";
+    let folder = workspace().join("examples/pump-hunting");
+    let text = std::fs::read_to_string(folder.join("n1.toml")).unwrap();
+    let at = text.find("# A small push").unwrap();
+    let end = text.find("[pressure_reference]").unwrap();
+    let model = format!("{}{outer}{}", &text[..at], &text[end..]);
+    let found = analysis(&Model::from_toml(&model, &folder).unwrap());
+    let outer = found.controllers.iter().find(|c| c.id == "outer").unwrap();
+    assert!(outer.open.unwrap().contains("set point of another controller"), "{outer:?}");
+    let inner = found.controllers.iter().find(|c| c.id == "pi1").unwrap();
+    assert!((inner.critical_gain.unwrap() / 16.56 - 1.0).abs() < 0.3, "{inner:?}");
+}

@@ -91,6 +91,23 @@ fn relative(difference: f64, terms: impl Iterator<Item = f64>, resolution: f64) 
     if scale > 0.0 { difference.abs() / scale } else { difference.abs() }
 }
 
+/// What the pumps that swung did: seconds, the largest swing and its period.
+fn swings(simulation: &Simulation) -> Value {
+    let (plan, state) = (simulation.plan(), simulation.state());
+    let swung = plan.swing_watches.iter().zip(&state.swings);
+    let swung = swung.filter(|(_, swing)| swing.hunting_s > 0.0 || swing.oscillating_s > 0.0);
+    let told = swung.map(|(watch, swing)| {
+        json!({
+            "pump": plan.edge_names[watch.edge],
+            "hunting_s": swing.hunting_s,
+            "oscillating_s": swing.oscillating_s,
+            "peak_to_peak_kg_s": swing.largest_kg_s,
+            "period_s": swing.period_s,
+        })
+    });
+    Value::Array(told.collect())
+}
+
 /// When stations were blocked, and by whom.
 fn blocked_spans(simulation: &Simulation) -> Vec<Value> {
     let (plan, state) = (simulation.plan(), simulation.state());
@@ -232,6 +249,7 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
             balance("electricity", balances.electric_j / 3.6e6, "kWh", 0.0),
         ],
         "blocked": blocked_spans(simulation),
+        "swings": swings(simulation),
         "pipes": pipes,
         "largest_pipe_error": pipe_error,
         "statistics": {

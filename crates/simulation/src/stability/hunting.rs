@@ -95,6 +95,8 @@ pub fn hunting(simulation: &mut Simulation) -> Result<Hunting, RunError> {
         let law = Law::of(plan, state, planned, planned.interval.as_s());
         let open = if law.held.iter().all(|held| *held) {
             Some("its output is at a limit")
+        } else if planned.acts_on.iter().any(|signal| is_set_point(plan, *signal)) {
+            Some("it acts on the set point of another controller, which is not analysed")
         } else if law.is_idle() {
             Some("its output does not follow what it measures")
         } else {
@@ -121,6 +123,11 @@ pub fn hunting(simulation: &mut Simulation) -> Result<Hunting, RunError> {
     }
     hunting.modes.sort_by(|a, b| b.growth_per_s.total_cmp(&a.growth_per_s));
     Ok(hunting)
+}
+
+/// Whether a signal is what another controller is to hold.
+fn is_set_point(plan: &Plan, signal: SignalId) -> bool {
+    plan.controllers.iter().any(|planned| planned.set_points.contains(&signal.index()))
 }
 
 /// What measured values (rows) do after a change of an output.
@@ -176,17 +183,13 @@ fn answers(simulation: &mut Simulation, closed: &[Closed]) -> Result<Answers, Ru
     Ok(Answers { gains, slow })
 }
 
-fn inputs(planned: &PlannedController) -> usize {
-    planned.measures.len()
-}
-
 /// Places of each closed controller's measured values and outputs.
 fn places(plan: &Plan, closed: &[Closed]) -> Vec<(std::ops::Range<usize>, std::ops::Range<usize>)> {
     let (mut seen, mut out) = (0, 0);
     let mut places = Vec::new();
     for c in closed {
         let planned = &plan.controllers[c.controller];
-        let (n_in, n_out) = (inputs(planned), planned.acts_on.len());
+        let (n_in, n_out) = (planned.measures.len(), planned.acts_on.len());
         places.push((seen..seen + n_in, out..out + n_out));
         seen += n_in;
         out += n_out;
