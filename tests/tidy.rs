@@ -94,6 +94,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "efficiency_motor",
     "equal_capacity_band",
     "heat_to_water",
+    "incidence_cosine",
     "kappa",
     "leakage",
     "loss_factor",

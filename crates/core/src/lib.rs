@@ -14,5 +14,6 @@ pub mod port;
 pub mod recorder;
 pub mod registry;
 pub mod signal;
+pub mod solar;
 pub mod testing;
 pub mod units;
