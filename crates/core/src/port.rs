@@ -59,15 +59,41 @@ pub enum Outlet {
         /// Lowest temperature at which it leaves, K.
         coldest_k: f64,
     },
+    /// It leaves as what stands at that end: a store between two lines.
+    Ends {
+        /// Temperature at which it leaves through port a, where negative flow leaves, K.
+        a_k: f64,
+        /// Temperature at which it leaves through port b, where positive flow leaves, K.
+        b_k: f64,
+    },
+    /// It approaches a temperature: it leaves with `constant_k + of_inlet T_in`.
+    Linear {
+        /// What is added, K.
+        constant_k: f64,
+        /// Share of the inlet temperature that remains, 0 to 1.
+        of_inlet: f64,
+    },
 }
 
 impl Outlet {
-    /// The heat flow into the water where no limit of the temperature acts, W; `None` for a temperature.
+    /// The heat flow into the water where no limit of the temperature acts, W; `None` where it depends on the
+    /// temperature of the water.
     pub fn heat_flow_w(&self) -> Option<f64> {
         match *self {
-            Self::Temperature(_) => None,
+            Self::Temperature(_) | Self::Ends { .. } | Self::Linear { .. } => None,
             Self::HeatFlow(q_w) => Some(q_w),
             Self::Cooled { wanted_w, .. } => Some(-wanted_w),
+        }
+    }
+
+    /// The temperature at which a flow leaves where it does not depend on the inlet, K.
+    #[inline]
+    pub fn temperature_k(&self, m_flow_kg_s: f64) -> Option<f64> {
+        match *self {
+            Self::Temperature(t_k) => Some(t_k),
+            Self::Ends { a_k, .. } if m_flow_kg_s < 0.0 => Some(a_k),
+            Self::Ends { b_k, .. } => Some(b_k),
+            _ => None,
         }
     }
 }

@@ -1,9 +1,29 @@
-//! The seam between the network and what stands behind a hydraulic interface.
+//! The seam of what stands behind a hydraulic interface: units that see water passing their ports.
 
 use anergy_core::medium::Medium;
 use anergy_core::port::{PortFlow, PortRequest};
 use anergy_core::signal::Signals;
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+use std::borrow::Cow;
 use thiserror::Error;
+
+/// A place where a stream of water passes a unit: on an edge of the network or in a circuit of the house.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitPort {
+    /// Name within the unit.
+    pub name: SmolStr,
+    /// Whether the unit sets the flow (it has the pump), or takes what comes.
+    pub sets_flow: bool,
+    /// Whether what it gets decides what the unit does at its other ports: the source of a heat pump.
+    pub leads: bool,
+}
+
+impl UnitPort {
+    /// The one port of a simple unit, whose flow it sets.
+    pub const ONLY: Self =
+        Self { name: SmolStr::new_static("port"), sets_flow: true, leads: false };
+}
 
 /// An input signal of a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,34 +36,90 @@ pub struct UnitInput {
     pub initial: f64,
     /// Smallest value that makes sense.
     pub min: f64,
+    /// Largest value that makes sense.
+    pub max: f64,
+    /// The signal that it follows while nothing drives it, where the model has it: `weather.t_outdoor_k`.
+    pub follows: Option<&'static str>,
 }
 
-/// A recorded output of a unit: name with SI suffix, UDUNITS unit.
-pub type UnitOutput = (&'static str, &'static str);
+/// A recorded output of a unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitOutput {
+    /// Name with SI suffix.
+    pub name: Cow<'static, str>,
+    /// UDUNITS unit.
+    pub unit: &'static str,
+}
+
+impl UnitOutput {
+    /// An output with a fixed name.
+    pub const fn new(name: &'static str, unit: &'static str) -> Self {
+        Self { name: Cow::Borrowed(name), unit }
+    }
+}
+
+/// What a unit exchanged besides the heat of the water through its ports; means over a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Exchange {
+    /// Electricity drawn, W; negative for a generator.
+    pub electric_w: f64,
+    /// All other heat into the unit, W: surroundings, sun, people, fuel; demand and losses are negative.
+    pub external_w: f64,
+}
 
 /// A thermal-only prosumer unit; its state lives in the slice it is given.
+///
+/// Over each step `d stored = dt (-sum_ports |m| cp (T_out - T_in) + electric + external)` holds to rounding.
 pub trait ThermalUnit {
+    /// Where water passes it.
+    fn ports(&self) -> Vec<UnitPort> {
+        vec![UnitPort::ONLY]
+    }
+
     /// The input signals, in the order [`Signals`] presents them.
     fn inputs(&self) -> Vec<UnitInput>;
 
     /// The recorded outputs, in the order of `out` in [`Self::advance`].
-    fn outputs(&self) -> &'static [UnitOutput];
+    fn outputs(&self) -> Vec<UnitOutput>;
 
     /// State at the start of a run in which all water has `initial_k`.
     fn initial_state(&self, initial_k: f64) -> Vec<f64>;
 
-    /// What the unit wants of its ports in the coming step.
-    fn request(&self, state: &[f64], signals: &Signals<'_>, wanted: &mut [PortRequest]);
+    /// What the unit wants of its ports in the coming step; `got` is what they had in the last one. May be
+    /// asked several times for a step.
+    fn request(
+        &self,
+        signals: &Signals<'_>,
+        got: &[PortFlow],
+        state: &mut [f64],
+        wanted: &mut [PortRequest],
+    );
 
-    /// Advances the unit by `dt_s` with what its ports got.
+    /// A port that leads got its answer for this step, the others may be wanted otherwise.
+    fn respond(
+        &self,
+        _port: usize,
+        _signals: &Signals<'_>,
+        _got: &[PortFlow],
+        _state: &mut [f64],
+        _wanted: &mut [PortRequest],
+    ) {
+    }
+
+    /// Advances the unit by `dt_s` with what its ports got; 0 only settles its outputs.
     fn advance(
         &self,
         dt_s: f64,
-        ports: &[PortFlow],
         signals: &Signals<'_>,
+        ports: &[PortFlow],
         state: &mut [f64],
         out: &mut [f64],
-    );
+    ) -> Exchange;
+
+    /// Heat that it holds, J above 0 degC.
+    fn stored_j(&self, _state: &[f64]) -> f64 {
+        0.0
+    }
 }
 
 /// A parameter of a unit that cannot be.

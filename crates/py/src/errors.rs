@@ -125,7 +125,8 @@ pub fn run_error(py: Python<'_>, error: &SimulationError, text: &str, origin: &O
         }
         E::Absurd { time, edge, .. } => failed(time, Some(edge)),
         E::Prescribed { time, free, .. } => failed(time, Some(free)),
-        E::Control { time, controller, .. } => failed(time, Some(controller)),
+        E::Control { time, controller: component, .. }
+        | E::UndefinedCircuit { time, circuit: component } => failed(time, Some(component)),
         E::UnknownName { name, .. } => python::UnknownNameError::new_err((message, name.clone())),
         E::OutOfRange { signal, value, min, max } => {
             python::OutOfRangeError::new_err((message, signal.clone(), *value, *min, *max))

@@ -10,6 +10,7 @@ mod pressure;
 mod pulses;
 mod regulators;
 mod signals;
+mod units;
 
 pub(crate) use network::pipe_temperatures;
 
@@ -24,12 +25,14 @@ use crate::state::{Reading, State};
 use crate::wording::refused;
 use anergy_core::clock::Time;
 use anergy_core::ids::{EdgeId, SignalId};
+use anergy_core::port::PortFlow;
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
 use anergy_network::graph::Network;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::{Station, StationState};
 use anergy_network::state::NetworkState;
+use anergy_prosumer::thermal_unit::Exchange;
 use network::pipes;
 use signals::Writer;
 use std::collections::HashMap;
@@ -94,6 +97,7 @@ impl Builder<'_> {
             .iter()
             .map(|edge| ("edge", edge.id.as_str(), &edge.place))
             .chain(model.units.iter().map(|unit| ("unit", unit.id.as_str(), &unit.place)))
+            .chain(model.circuits.iter().map(|c| ("circuit", c.id.as_str(), &c.place)))
             .chain(model.interfaces.iter().map(|i| ("interface", i.id.as_str(), &i.place)))
             .chain(model.sensors.iter().map(|s| ("sensor", s.entry.id.as_str(), &s.place)))
             .chain(model.controllers.iter().map(|c| ("controller", c.id.as_str(), &c.place)))
@@ -132,7 +136,7 @@ impl Builder<'_> {
         let mut nodes = self.nodes();
         self.references(&mut nodes, &node_ids);
         let (edges, couplings, soil) = self.edges(&node_ids, &edge_ids);
-        let ports = self.ports(&edge_ids);
+        let mut houses = self.houses(&edge_ids);
         let whole = edges.len() == model.edges.len();
         let prescriptions =
             if whole { self.prescriptions(&node_ids, &edge_ids, &edges) } else { Vec::new() };
@@ -142,7 +146,7 @@ impl Builder<'_> {
             gravity_m_s2: model.gravity_m_s2,
             nodes,
             edges,
-            ports,
+            ports: houses.edges.clone(),
             prescriptions,
             couplings,
             soil,
@@ -162,7 +166,7 @@ impl Builder<'_> {
         };
         let regulators = self.regulator_signals(&network.regulators, &mut signals);
         let surroundings = self.surroundings(&mut signals, ground, &by_depth);
-        let units = self.units(&edge_ids, &network, &commands, &mut signals, &mut writers);
+        let units = self.units(&mut houses, &network, &commands, &mut signals, &mut writers);
         let stations = self.stations(&edge_ids);
         let worst_points = self.worst_points(&node_ids);
         let prescriptions =
@@ -197,6 +201,9 @@ impl Builder<'_> {
             station_of_valve: interlocks(model.edges.len(), &stations),
             stations,
             units,
+            grid_ports: houses.grid_ports,
+            circuits: houses.circuits,
+            follows: Vec::new(),
             sensors: Vec::new(),
             controllers: Vec::new(),
             swing_watches: Vec::new(),
@@ -252,6 +259,7 @@ impl Builder<'_> {
         self.sensors(&mut plan);
         self.controllers(&mut plan, &set_points, &mut writers);
         (plan.channels, plan.sources) = (Vec::new(), Vec::new());
+        plan.follows = self.follows(&plan.units, &plan.signals, &writers);
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
@@ -316,6 +324,15 @@ impl Builder<'_> {
                 .flat_map(|unit| unit.equipment.initial_state(initial_k))
                 .collect(),
             unit_outputs: vec![0.0; units.last().map_or(0, |unit| unit.outputs.end)],
+            unit_ports: vec![
+                PortFlow {
+                    t_in_k: initial_k,
+                    t_out_k: initial_k,
+                    ..PortFlow::default()
+                };
+                units.last().map_or(0, |unit| unit.slots.end)
+            ],
+            unit_exchange: vec![Exchange::default(); units.len()],
             stations: vec![StationState::default(); stations.len()],
             blocked_spans: Vec::new(),
             station_heat_j: vec![0.0; stations.len()],
@@ -331,6 +348,9 @@ impl Builder<'_> {
             last_tick: Vec::new(),
             electric_j: 0.0,
             units_j: 0.0,
+            units_electric_j: 0.0,
+            units_external_j: 0.0,
+            units_initial_j: 0.0,
             pump_heat_j: 0.0,
             friction_j: 0.0,
             pipes: Vec::new(),

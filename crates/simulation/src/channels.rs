@@ -8,6 +8,7 @@ use anergy_core::port::Port;
 use anergy_core::recorder::{Channel, ChannelGroup};
 use anergy_network::elements::Element;
 use anergy_network::graph::Coupling;
+use anergy_prosumer::thermal_unit::UnitPort;
 
 /// Where the value of a channel comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +67,14 @@ pub enum Source {
     WorstPoint(usize),
     /// An output of a unit.
     UnitOutput(usize),
+    /// Flow through a port of a unit, kg/s.
+    UnitFlow(usize),
+    /// Temperature of the water that arrives at a port, K.
+    UnitInlet(usize),
+    /// Temperature of the water that leaves a port, K.
+    UnitOutlet(usize),
+    /// Heat that the water takes up at a port, W.
+    UnitHeat(usize),
     /// Whether a watched pump swings: 1 alone, 2 against another.
     PumpSwing(usize),
     /// Reading of a sensor.
@@ -76,6 +85,10 @@ pub enum Source {
     TotalElectric,
     /// Heat from all units, W.
     TotalUnits,
+    /// Electricity that the units draw, W.
+    UnitsElectric,
+    /// Other heat that the units take up from outside, W.
+    UnitsExternal,
     /// Heat from the losses of all pumps, W.
     TotalPumpHeat,
     /// Heat of friction in all edges, W.
@@ -97,6 +110,10 @@ pub enum Cumulative {
     Electric,
     /// Heat from the units.
     Units,
+    /// Electricity of the units.
+    UnitsElectric,
+    /// Other heat into the units.
+    UnitsExternal,
     /// Heat from the losses of the pumps.
     PumpHeat,
     /// Heat of friction.
@@ -152,9 +169,20 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(ChannelGroup::Interfaces, &point.name, "dp_pa", "Pa", Source::WorstPoint(i));
     }
     for unit in &plan.units {
-        for (k, (quantity, unit_word)) in unit.equipment.outputs().iter().enumerate() {
+        for (k, output) in unit.equipment.outputs().iter().enumerate() {
             let source = Source::UnitOutput(unit.outputs.start + k);
-            list.add(ChannelGroup::Units, &unit.name, quantity, unit_word, source);
+            list.add(ChannelGroup::Units, &unit.name, &output.name, output.unit, source);
+        }
+        for (port, slot) in unit.ports.iter().zip(unit.slots.clone()) {
+            if port.name == UnitPort::ONLY.name {
+                continue;
+            }
+            let name = format!("{}.{}", unit.name, port.name);
+            let group = ChannelGroup::Units;
+            list.add(group, &name, "m_flow_kg_s", "kg s-1", Source::UnitFlow(slot));
+            list.add(group, &name, "t_in_k", "K", Source::UnitInlet(slot));
+            list.add(group, &name, "t_out_k", "K", Source::UnitOutlet(slot));
+            list.add(group, &name, "q_flow_w", "W", Source::UnitHeat(slot));
         }
     }
     for (i, spec) in plan.signals.specs().iter().enumerate() {
@@ -183,6 +211,16 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         let joule = Source::Cumulative(Cumulative::Friction);
         list.add(ChannelGroup::Balances, "network", "friction_w", "W", Source::TotalFriction);
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
+    }
+    if plan.has_houses() {
+        for (quantity, unit, source) in [
+            ("units_electric_w", "W", Source::UnitsElectric),
+            ("units_external_w", "W", Source::UnitsExternal),
+            ("units_electric_j", "J", Source::Cumulative(Cumulative::UnitsElectric)),
+            ("units_external_j", "J", Source::Cumulative(Cumulative::UnitsExternal)),
+        ] {
+            list.add(ChannelGroup::Balances, "network", quantity, unit, source);
+        }
     }
     sensors(&mut list, plan);
     for (i, watch) in plan.swing_watches.iter().enumerate() {
@@ -329,6 +367,14 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
             pairs.map(|&(a, b)| network.p_pa[a] - network.p_pa[b]).fold(f64::INFINITY, f64::min)
         }
         Source::UnitOutput(i) => state.unit_outputs[i],
+        Source::UnitFlow(slot) => state.unit_ports[slot].m_flow_kg_s,
+        Source::UnitInlet(slot) => state.unit_ports[slot].t_in_k,
+        Source::UnitOutlet(slot) => state.unit_ports[slot].t_out_k,
+        Source::UnitHeat(slot) => {
+            let port = &state.unit_ports[slot];
+            let capacity_w_k = port.m_flow_kg_s.abs() * plan.network.medium.heat_capacity_j_kg_k;
+            capacity_w_k * (port.t_out_k - port.t_in_k)
+        }
         Source::PumpSwing(i) => match state.swings[i].said {
             Said::Quiet => 0.0,
             Said::Oscillating => 1.0,
@@ -338,6 +384,8 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::Signal(id) => state.signals[id.index()],
         Source::TotalElectric => plan.total_electric_w(network),
         Source::TotalUnits => plan.total_units_w(network),
+        Source::UnitsElectric => state.unit_exchange.iter().map(|e| e.electric_w).sum(),
+        Source::UnitsExternal => state.unit_exchange.iter().map(|e| e.external_w).sum(),
         Source::TotalPumpHeat => plan.total_pump_heat_w(network),
         Source::TotalFriction => network.q_friction_w,
         Source::TotalLoss => plan.total_loss_w(network),
@@ -345,6 +393,8 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::Stored => network.stored_j(&plan.network),
         Source::Cumulative(Cumulative::Electric) => state.electric_j,
         Source::Cumulative(Cumulative::Units) => state.units_j,
+        Source::Cumulative(Cumulative::UnitsElectric) => state.units_electric_j,
+        Source::Cumulative(Cumulative::UnitsExternal) => state.units_external_j,
         Source::Cumulative(Cumulative::PumpHeat) => state.pump_heat_j,
         Source::Cumulative(Cumulative::Friction) => state.friction_j,
         Source::Cumulative(Cumulative::Loss) => state.loss_j,

@@ -117,6 +117,14 @@ pub enum RunError {
         #[source]
         source: FactorError,
     },
+    /// A circuit of a house in which nothing holds the temperature.
+    #[error("at {time}: circuit \"{circuit}\": its units add heat, but none holds the temperature")]
+    UndefinedCircuit {
+        /// Simulated time.
+        time: String,
+        /// The circuit.
+        circuit: String,
+    },
     /// A controller failed.
     #[error("at {time}: controller \"{controller}\": {source}")]
     Control {

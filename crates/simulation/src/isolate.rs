@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{DriverSpec, Model, Place};
 use crate::model_file::{Interpolation, NodeEntryKind};
 use anergy_network::elements::ElementParams;
-use smol_str::format_smolstr;
+use smol_str::{SmolStr, format_smolstr};
 use std::collections::{HashMap, HashSet};
 
 /// What is given at a cut node.
@@ -111,7 +111,29 @@ impl Model {
             }
         }
         let kept_edge = |id: &str| wanted.contains(id);
-        model.units.retain(|unit| kept_edge(&unit.port));
+        let of = |member: &str, unit: &str| {
+            member.strip_prefix(unit).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let mut kept_units: HashSet<SmolStr> = HashSet::new();
+        kept_units.extend(model.units.iter().filter(|u| kept_edge(&u.port)).map(|u| u.id.clone()));
+        // Circuits bring the rest of a house along.
+        loop {
+            let before = kept_units.len();
+            for circuit in &model.circuits {
+                let passes = |unit: &SmolStr| circuit.through.iter().any(|member| of(member, unit));
+                if kept_units.iter().any(passes) {
+                    let units = model.units.iter().map(|unit| &unit.id);
+                    kept_units.extend(units.filter(|unit| passes(unit)).cloned());
+                }
+            }
+            if kept_units.len() == before {
+                break;
+            }
+        }
+        model.units.retain(|unit| kept_units.contains(&unit.id));
+        model.circuits.retain(|circuit| {
+            kept_units.iter().any(|unit| circuit.through.iter().any(|member| of(member, unit)))
+        });
         model.effects.retain(|effect| kept_edge(&effect.component));
         model.interfaces.retain(|interface| {
             kept_edge(&interface.edge)
@@ -124,6 +146,7 @@ impl Model {
             .map(|edge| edge.id.to_string())
             .chain(model.nodes.iter().map(|node| node.entry.id.to_string()))
             .chain(model.units.iter().map(|unit| unit.id.to_string()))
+            .chain(model.circuits.iter().map(|circuit| circuit.id.to_string()))
             .chain(model.interfaces.iter().map(|interface| interface.id.clone()))
             .chain(std::iter::once("ground".to_owned()))
             .collect();

@@ -59,10 +59,23 @@ pub struct EdgeSpec {
 pub struct UnitSpec {
     /// Name.
     pub id: SmolStr,
-    /// The edge it is connected to.
+    /// The edge that its port outside of circuits stands on; empty where all its ports are in circuits.
     pub port: SmolStr,
     /// The unit.
     pub params: EquipmentParams,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A circuit of a house.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CircuitSpec {
+    /// Name.
+    pub id: SmolStr,
+    /// Ports in the order of the flow: `UNIT.PORT`, or `UNIT` where it has one port.
+    pub through: Vec<SmolStr>,
+    /// Flow of its own pump while nothing drives it, m3/s.
+    pub v_flow_m3_s: Option<f64>,
     /// Where it stands.
     pub place: Place,
 }
@@ -205,6 +218,8 @@ pub struct Model {
     pub edges: Vec<EdgeSpec>,
     /// Thermal units.
     pub units: Vec<UnitSpec>,
+    /// Circuits of houses.
+    pub circuits: Vec<CircuitSpec>,
     /// Hydraulic interfaces.
     pub interfaces: Vec<InterfaceSpec>,
     /// Sensors.

@@ -269,6 +269,22 @@ pub struct InterfaceEntry {
     pub requested_flow_m3_s: Option<f64>,
 }
 
+/// `[[circuit]]`: a closed circuit of water in a house, through ports of its units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitEntry {
+    /// Site that it belongs to, in front of its name and of those of its units.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub site: Option<String>,
+    /// Name, within its site where one is given.
+    pub id: String,
+    /// Ports in the order of the flow: `UNIT.PORT`, or `UNIT` where it has one port.
+    pub through: Vec<String>,
+    /// Flow of its own pump while nothing drives it, m3/s. Absent: one of its units sets the flow.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub v_flow_m3_s: Option<f64>,
+}
+
 /// `[[prescribed]]`: a quantity that is given, and the actuator that is left free in its place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

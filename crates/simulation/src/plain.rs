@@ -70,9 +70,25 @@ impl Model {
             self.units
                 .iter()
                 .map(|unit| {
-                    let head =
-                        json!({ "id": unit.id, "kind": unit.params.kind(), "port": unit.port });
+                    let mut head = json!({ "id": unit.id, "kind": unit.params.kind() });
+                    if !unit.port.is_empty() {
+                        head["port"] = json!(unit.port);
+                    }
                     joined(head, unit.params.to_value())
+                })
+                .collect(),
+        );
+        section(
+            "circuit",
+            self.circuits
+                .iter()
+                .map(|circuit| {
+                    let whole = json!({
+                        "id": circuit.id,
+                        "through": circuit.through,
+                        "v_flow_m3_s": circuit.v_flow_m3_s,
+                    });
+                    without_nulls(whole)
                 })
                 .collect(),
         );

@@ -3,6 +3,7 @@
 mod access;
 mod actuators;
 mod control;
+mod houses;
 mod hunting;
 mod meters;
 mod pipes;
@@ -21,8 +22,8 @@ use crate::state::State;
 use anergy_core::clock::Time;
 use anergy_core::error::FactorError;
 use anergy_core::ids::SignalId;
+use anergy_core::port::PortRequest;
 use anergy_core::recorder::Event;
-use anergy_core::signal::Signals;
 use anergy_network::graph::NodeKind;
 use anergy_network::hydraulics::{HydraulicReport, HydraulicSolver};
 use anergy_network::state::Hold;
@@ -48,7 +49,8 @@ pub struct Simulation {
     transport: Transport,
     /// Events since they were last taken.
     events: Vec<Event>,
-    wanted: Vec<anergy_core::port::PortRequest>,
+    /// What the ports of the units want in the present step.
+    wanted: Vec<PortRequest>,
     /// What the prescriptions were before the last solve.
     holds: Vec<Hold>,
     /// Where each driver was found last; results do not depend on it.
@@ -72,7 +74,7 @@ impl Simulation {
             solver,
             transport,
             events: Vec::with_capacity(64),
-            wanted: state.network.requests.clone(),
+            wanted: vec![PortRequest::default(); state.unit_ports.len()],
             state,
             holds: vec![Hold::Held; plan.prescriptions.len()],
             near: vec![0; plan.drivers.len()],
@@ -101,6 +103,7 @@ impl Simulation {
             self.state.signals[driver.signal.index()] = driver.value_at(Time::ZERO);
         }
         self.follow_seasons(Time::ZERO);
+        self.follow_signals();
         self.request_units();
         self.apply_inputs();
         self.state.network.rest_soil(&self.plan.network.soil);
@@ -116,6 +119,7 @@ impl Simulation {
         self.watch_pressures(Time::ZERO);
         self.fill_pipes();
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
+        self.state.units_initial_j = self.units_stored_j();
         Ok(())
     }
 
@@ -137,7 +141,7 @@ impl Simulation {
             .advance(&self.plan.network, &mut self.state.network, dt_s)
             .map_err(|source| RunError::Singular { time: now.to_string(), source })?;
         self.state.network.advance_soil(&self.plan.network.soil, dt_s);
-        self.advance_units(dt_s);
+        self.advance_units(dt_s)?;
         self.watch_stations(end, dt_s);
         self.watch_targets(end, dt_s);
         self.watch_swings(end, dt_s);
@@ -177,6 +181,16 @@ impl Simulation {
                 self.state.signals[driver.signal.index()] = driver.value_until(end, *near);
             }
         }
+        self.follow_signals();
+    }
+
+    /// Inputs of units that nothing else drives follow another signal.
+    fn follow_signals(&mut self) {
+        for (to, from) in &self.plan.follows {
+            if !self.state.taken_over[to.index()] {
+                self.state.signals[to.index()] = self.state.signals[from.index()];
+            }
+        }
     }
 
     /// The ground follows the year: evaluated once per step at its end, at each depth.
@@ -187,19 +201,6 @@ impl Simulation {
                 let new_year_s = ground.start_s + time.as_s();
                 self.state.signals[signal.index()] =
                     ground.seasons.temperature_k(*depth_m, new_year_s);
-            }
-        }
-    }
-
-    /// Units say what they want of their ports.
-    fn request_units(&mut self) {
-        for unit in &self.plan.units {
-            let wanted = &mut self.wanted[unit.port..=unit.port];
-            let signals = Signals(&self.state.signals[unit.inputs.clone()]);
-            unit.equipment.request(&self.state.unit_states[unit.state.clone()], &signals, wanted);
-            self.state.network.requests[unit.port] = wanted[0];
-            if let Some(command) = unit.imposes_flow {
-                self.state.signals[command.index()] = wanted[0].m_flow_kg_s;
             }
         }
     }
@@ -256,27 +257,16 @@ impl Simulation {
         Ok(report)
     }
 
-    /// Units take what their ports got.
-    fn advance_units(&mut self, dt_s: f64) {
-        for unit in &self.plan.units {
-            let got = self.state.network.port_flows[unit.port];
-            let signals = Signals(&self.state.signals[unit.inputs.clone()]);
-            unit.equipment.advance(
-                dt_s,
-                &[got],
-                &signals,
-                &mut self.state.unit_states[unit.state.clone()],
-                &mut self.state.unit_outputs[unit.outputs.clone()],
-            );
-        }
-    }
-
     /// Integrates heat, electricity and hydraulic work.
     fn book(&mut self, dt_s: f64) {
         let (plan, state) = (&self.plan, &mut self.state);
         let network = &state.network;
         state.electric_j += plan.total_electric_w(network) * dt_s;
         state.units_j += plan.total_units_w(network) * dt_s;
+        for exchange in &state.unit_exchange {
+            state.units_electric_j += exchange.electric_w * dt_s;
+            state.units_external_j += exchange.external_w * dt_s;
+        }
         state.pump_heat_j += plan.total_pump_heat_w(network) * dt_s;
         state.friction_j += network.q_friction_w * dt_s;
         state.loss_j += plan.total_loss_w(network) * dt_s;
@@ -315,7 +305,7 @@ impl Simulation {
             .settle(&self.plan.network, &mut self.state.network)
             .map_err(|source| RunError::Singular { time: "steady state".into(), source })?;
         self.state.network.settle_soil(&self.plan.network.soil);
-        self.advance_units(0.0);
+        self.advance_units(0.0)?;
         self.read_meters(0.0);
         self.hold_pressures(0.0);
         self.rest_sensors();

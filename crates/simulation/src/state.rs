@@ -5,9 +5,11 @@ use crate::error::RunError;
 use crate::simulation::{BlockedSpan, Missed, SwingState};
 use anergy_control::sensor::SensorState;
 use anergy_core::clock::Time;
+use anergy_core::port::PortFlow;
 use anergy_network::holding::VesselState;
 use anergy_network::interface::StationState;
 use anergy_network::state::NetworkState;
+use anergy_prosumer::thermal_unit::Exchange;
 use serde::{Deserialize, Serialize};
 
 /// What a heat meter shows.
@@ -42,6 +44,10 @@ pub struct State {
     pub(crate) taken_over: Vec<bool>,
     pub(crate) unit_states: Vec<f64>,
     pub(crate) unit_outputs: Vec<f64>,
+    /// What the ports of the units got in the last step.
+    pub(crate) unit_ports: Vec<PortFlow>,
+    /// Electricity and other heat of each unit in the last step.
+    pub(crate) unit_exchange: Vec<Exchange>,
     pub(crate) stations: Vec<StationState>,
     /// When their flags were up, in the order in which they went up.
     pub(crate) blocked_spans: Vec<BlockedSpan>,
@@ -62,6 +68,12 @@ pub struct State {
     pub(crate) last_tick: Vec<Time>,
     pub(crate) electric_j: f64,
     pub(crate) units_j: f64,
+    /// Electricity that the units drew.
+    pub(crate) units_electric_j: f64,
+    /// All other heat that they took up from outside.
+    pub(crate) units_external_j: f64,
+    /// What they held at the start.
+    pub(crate) units_initial_j: f64,
     pub(crate) pump_heat_j: f64,
     pub(crate) friction_j: f64,
     /// Heat of each pipe, in the order of the edges.
@@ -93,6 +105,8 @@ impl State {
             + heap(&self.taken_over)
             + heap(&self.unit_states)
             + heap(&self.unit_outputs)
+            + heap(&self.unit_ports)
+            + heap(&self.unit_exchange)
             + heap(&self.stations)
             + heap(&self.station_heat_j)
             + heap(&self.meters)

@@ -159,8 +159,7 @@ fn settle_temperatures(simulation: &mut Simulation) -> Result<u32, RunError> {
                 plan.node_names[node]
             );
         } else if port_change > SETTLED_K {
-            let unit = plan.units.iter().find(|unit| unit.port == port);
-            let name = unit.map_or("", |unit| unit.name.as_str());
+            let name = plan.unit_at(port);
             culprit = format!("unit \"{name}\" changes by {port_change:.2e} K per round");
         } else if round == 1 && simulation.state().unit_states != units {
             // Units answer from their state: what they have just heard shows in the next round.

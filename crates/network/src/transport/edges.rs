@@ -30,6 +30,12 @@ impl Transport {
                 }
                 port => match state.requests[port as usize].outlet {
                     Outlet::Temperature(t_k) => Relation::constant(t_k),
+                    Outlet::Ends { a_k, b_k } => {
+                        Relation::constant(if m < 0.0 { a_k } else { b_k })
+                    }
+                    Outlet::Linear { constant_k, of_inlet } => {
+                        Relation { constant_k, of_inlet, ..Relation::PASS }
+                    }
                     Outlet::HeatFlow(q_w) => {
                         Relation { constant_k: q_w / (m.abs() * cp), ..Relation::PASS }
                     }
@@ -110,7 +116,8 @@ impl Transport {
         let capacity = request.m_flow_kg_s.abs() * network.medium.heat_capacity_j_kg_k;
         let rise_k = |q_w: f64| if capacity > 0.0 { q_w / capacity } else { 0.0 };
         match request.outlet {
-            Outlet::Temperature(t_k) => t_k,
+            Outlet::Temperature(t_k) | Outlet::Ends { b_k: t_k, .. } => t_k,
+            Outlet::Linear { constant_k, of_inlet } => constant_k + of_inlet * t_k,
             Outlet::HeatFlow(q_w) => t_k + rise_k(q_w),
             Outlet::Cooled { wanted_w, coldest_k } => {
                 (t_k + rise_k(-wanted_w)).max(coldest_k.min(t_k))

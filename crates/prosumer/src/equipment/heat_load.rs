@@ -10,7 +10,7 @@
 //!
 //! **Sources** ideal substation of the DESTEST definition (`destest2019`).
 
-use crate::thermal_unit::{ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
+use crate::thermal_unit::{Exchange, ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
 use anergy_core::medium::Medium;
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
@@ -142,16 +142,23 @@ impl HeatLoad {
 
 impl ThermalUnit for HeatLoad {
     fn inputs(&self) -> Vec<UnitInput> {
-        vec![UnitInput { name: "load_w", unit: "w", initial: self.load_w, min: 0.0 }]
+        vec![UnitInput {
+            name: "load_w",
+            unit: "w",
+            initial: self.load_w,
+            min: 0.0,
+            max: f64::INFINITY,
+            follows: None,
+        }]
     }
 
-    fn outputs(&self) -> &'static [UnitOutput] {
-        &[
-            ("q_flow_w", "W"),
-            ("m_flow_kg_s", "kg s-1"),
-            ("t_in_k", "K"),
-            ("t_out_k", "K"),
-            ("unmet_w", "W"),
+    fn outputs(&self) -> Vec<UnitOutput> {
+        vec![
+            UnitOutput::new("q_flow_w", "W"),
+            UnitOutput::new("m_flow_kg_s", "kg s-1"),
+            UnitOutput::new("t_in_k", "K"),
+            UnitOutput::new("t_out_k", "K"),
+            UnitOutput::new("unmet_w", "W"),
         ]
     }
 
@@ -159,7 +166,13 @@ impl ThermalUnit for HeatLoad {
         vec![initial_k]
     }
 
-    fn request(&self, state: &[f64], signals: &Signals<'_>, wanted: &mut [PortRequest]) {
+    fn request(
+        &self,
+        signals: &Signals<'_>,
+        _got: &[PortFlow],
+        state: &mut [f64],
+        wanted: &mut [PortRequest],
+    ) {
         let (load_w, t_in_k) = (signals.get(0).max(0.0), state[0]);
         let m = self.m_flow_kg_s(load_w, t_in_k);
         let limit_k = match self.return_water {
@@ -176,11 +189,11 @@ impl ThermalUnit for HeatLoad {
     fn advance(
         &self,
         _dt_s: f64,
-        ports: &[PortFlow],
         signals: &Signals<'_>,
+        ports: &[PortFlow],
         state: &mut [f64],
         out: &mut [f64],
-    ) {
+    ) -> Exchange {
         let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
         state[0] = t_in_k;
         out[0] = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
@@ -188,6 +201,7 @@ impl ThermalUnit for HeatLoad {
         out[2] = t_in_k;
         out[3] = t_out_k;
         out[4] = (signals.get(0) + out[0]).max(0.0);
+        Exchange { external_w: out[0], ..Exchange::default() }
     }
 }
 
@@ -197,7 +211,7 @@ mod tests {
 
     fn request(unit: &HeatLoad, t_in_k: f64, load_w: f64) -> PortRequest {
         let mut wanted = [PortRequest::default()];
-        unit.request(&[t_in_k], &Signals(&[load_w]), &mut wanted);
+        unit.request(&Signals(&[load_w]), &[], &mut [t_in_k], &mut wanted);
         wanted[0]
     }
 

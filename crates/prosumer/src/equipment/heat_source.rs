@@ -8,7 +8,9 @@
 //!
 //! **Sources** sliding supply temperature of district heating, `frederiksen2013`.
 
-use crate::thermal_unit::{ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
+use crate::thermal_unit::{
+    Exchange, ThermalUnit, UnitError, UnitInput, UnitOutput, UnitPort, capacity_w_k,
+};
 use anergy_core::medium::Medium;
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
@@ -106,21 +108,25 @@ impl HeatSource {
 }
 
 impl ThermalUnit for HeatSource {
+    fn ports(&self) -> Vec<UnitPort> {
+        vec![UnitPort { sets_flow: false, ..UnitPort::ONLY }]
+    }
+
     fn inputs(&self) -> Vec<UnitInput> {
         let (name, initial) = match &self.supply {
             Supply::Fixed(t_k) => ("supply_k", *t_k),
             Supply::Curve { outdoor_k, .. } => ("outdoor_k", *outdoor_k),
         };
-        vec![UnitInput { name, unit: "k", initial, min: 0.0 }]
+        vec![UnitInput { name, unit: "k", initial, min: 0.0, max: f64::INFINITY, follows: None }]
     }
 
-    fn outputs(&self) -> &'static [UnitOutput] {
-        &[
-            ("q_flow_w", "W"),
-            ("m_flow_kg_s", "kg s-1"),
-            ("t_in_k", "K"),
-            ("t_out_k", "K"),
-            ("supply_set_k", "K"),
+    fn outputs(&self) -> Vec<UnitOutput> {
+        vec![
+            UnitOutput::new("q_flow_w", "W"),
+            UnitOutput::new("m_flow_kg_s", "kg s-1"),
+            UnitOutput::new("t_in_k", "K"),
+            UnitOutput::new("t_out_k", "K"),
+            UnitOutput::new("supply_set_k", "K"),
         ]
     }
 
@@ -128,7 +134,13 @@ impl ThermalUnit for HeatSource {
         Vec::new()
     }
 
-    fn request(&self, _state: &[f64], signals: &Signals<'_>, wanted: &mut [PortRequest]) {
+    fn request(
+        &self,
+        signals: &Signals<'_>,
+        _got: &[PortFlow],
+        _state: &mut [f64],
+        wanted: &mut [PortRequest],
+    ) {
         let outlet = Outlet::Temperature(self.supply_k(signals));
         wanted[0] = PortRequest { m_flow_kg_s: 0.0, outlet };
     }
@@ -136,17 +148,18 @@ impl ThermalUnit for HeatSource {
     fn advance(
         &self,
         _dt_s: f64,
-        ports: &[PortFlow],
         signals: &Signals<'_>,
+        ports: &[PortFlow],
         _state: &mut [f64],
         out: &mut [f64],
-    ) {
+    ) -> Exchange {
         let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
         out[0] = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
         out[1] = m_flow_kg_s;
         out[2] = t_in_k;
         out[3] = t_out_k;
         out[4] = self.supply_k(signals);
+        Exchange { external_w: out[0], ..Exchange::default() }
     }
 }
 
@@ -157,7 +170,7 @@ mod tests {
     fn supply_degc(params: &HeatSourceParams, signal_degc: f64) -> f64 {
         let unit = params.build(&Medium::default()).unwrap();
         let mut wanted = [PortRequest::default()];
-        unit.request(&[], &Signals(&[signal_degc + 273.15]), &mut wanted);
+        unit.request(&Signals(&[signal_degc + 273.15]), &[], &mut [], &mut wanted);
         let Outlet::Temperature(t_k) = wanted[0].outlet else { panic!() };
         t_k - 273.15
     }
@@ -191,7 +204,7 @@ mod tests {
         let unit = HeatSourceParams::default().build(&Medium::default()).unwrap();
         let (mut out, got) =
             ([0.0; 5], PortFlow { m_flow_kg_s: 1.0, t_in_k: 323.15, t_out_k: 353.15 });
-        unit.advance(1.0, &[got], &Signals(&[353.15]), &mut [], &mut out);
+        unit.advance(1.0, &Signals(&[353.15]), &[got], &mut [], &mut out);
         assert!((out[0] - 125_400.0).abs() < 1e-6);
     }
 }

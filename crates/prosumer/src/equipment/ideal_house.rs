@@ -10,7 +10,7 @@
 //!
 //! **Sources** the ideal house behind a bidirectional station, `licklederer2024`.
 
-use crate::thermal_unit::{ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
+use crate::thermal_unit::{Exchange, ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
 use anergy_core::medium::Medium;
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
@@ -91,24 +91,33 @@ fn decay(dt_s: f64, lag_s: f64) -> f64 {
 impl ThermalUnit for IdealHouse {
     fn inputs(&self) -> Vec<UnitInput> {
         vec![
-            UnitInput { name: "sent_k", unit: "k", initial: self.params.sent_k, min: 0.0 },
+            UnitInput {
+                name: "sent_k",
+                unit: "k",
+                initial: self.params.sent_k,
+                min: 0.0,
+                max: f64::INFINITY,
+                follows: None,
+            },
             UnitInput {
                 name: "v_flow_m3_s",
                 unit: "m3_s",
                 initial: self.params.v_flow_m3_s,
                 min: f64::NEG_INFINITY,
+                max: f64::INFINITY,
+                follows: None,
             },
         ]
     }
 
-    fn outputs(&self) -> &'static [UnitOutput] {
-        &[
-            ("q_flow_w", "W"),
-            ("m_flow_kg_s", "kg s-1"),
-            ("t_in_k", "K"),
-            ("t_out_k", "K"),
-            ("t_hot_k", "K"),
-            ("t_cold_k", "K"),
+    fn outputs(&self) -> Vec<UnitOutput> {
+        vec![
+            UnitOutput::new("q_flow_w", "W"),
+            UnitOutput::new("m_flow_kg_s", "kg s-1"),
+            UnitOutput::new("t_in_k", "K"),
+            UnitOutput::new("t_out_k", "K"),
+            UnitOutput::new("t_hot_k", "K"),
+            UnitOutput::new("t_cold_k", "K"),
         ]
     }
 
@@ -116,7 +125,13 @@ impl ThermalUnit for IdealHouse {
         vec![self.params.sent_k, self.params.v_flow_m3_s, self.params.v_flow_m3_s]
     }
 
-    fn request(&self, state: &[f64], _signals: &Signals<'_>, wanted: &mut [PortRequest]) {
+    fn request(
+        &self,
+        _signals: &Signals<'_>,
+        _got: &[PortFlow],
+        state: &mut [f64],
+        wanted: &mut [PortRequest],
+    ) {
         wanted[0] = PortRequest {
             m_flow_kg_s: state[2] * self.medium.density_kg_m3,
             outlet: Outlet::Temperature(state[0]),
@@ -126,11 +141,11 @@ impl ThermalUnit for IdealHouse {
     fn advance(
         &self,
         dt_s: f64,
-        ports: &[PortFlow],
         signals: &Signals<'_>,
+        ports: &[PortFlow],
         state: &mut [f64],
         out: &mut [f64],
-    ) {
+    ) -> Exchange {
         let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
         let feeds_in = state[2] > 0.0 || (state[2] == 0.0 && signals.get(1) >= 0.0);
         out[0] = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
@@ -146,6 +161,7 @@ impl ThermalUnit for IdealHouse {
         let passing = if kept > 0.0 { first * dt_s / lag_s * kept } else { 0.0 };
         state[1] = signals.get(1) + first * kept;
         state[2] = signals.get(1) + second * kept + passing;
+        Exchange { external_w: out[0], ..Exchange::default() }
     }
 }
 
@@ -172,7 +188,7 @@ mod tests {
             let flow = PortFlow { m_flow_kg_s: 0.1, t_in_k: 310.0, t_out_k: 328.15 };
             let mut t_s = 0.0;
             while t_s < 8.0 - 1e-9 {
-                house.advance(dt_s, &[flow], &Signals(&[303.15, -1e-4]), &mut state, &mut out);
+                house.advance(dt_s, &Signals(&[303.15, -1e-4]), &[flow], &mut state, &mut out);
                 t_s += dt_s;
             }
             assert!((state[2] - (1e-4 - 2e-4 * 0.996293)).abs() < 1e-9, "{dt_s}: {state:?}");
@@ -187,15 +203,15 @@ mod tests {
         let mut out = [0.0; 6];
         let flow = PortFlow { m_flow_kg_s: 0.1, t_in_k: 310.0, t_out_k: 328.15 };
         let mut state = house.initial_state(300.0);
-        house.advance(1.0, &[flow], &Signals(&[328.15, 1e-4]), &mut state, &mut out);
+        house.advance(1.0, &Signals(&[328.15, 1e-4]), &[flow], &mut state, &mut out);
         // 0.1 kg/s 4200 J/(kg K) 18.15 K = 7623 W
         assert!((out[0] - 7623.0).abs() < 1e-6 && out[4] == 328.15 && out[5] == 310.0, "{out:?}");
         let mut state = [303.15, -1e-4, -1e-4];
         let flow = PortFlow { m_flow_kg_s: 0.1, t_in_k: 323.15, t_out_k: 303.15 };
-        house.advance(1.0, &[flow], &Signals(&[303.15, -1e-4]), &mut state, &mut out);
+        house.advance(1.0, &Signals(&[303.15, -1e-4]), &[flow], &mut state, &mut out);
         assert!(out[4] == 323.15 && out[5] == 303.15, "{out:?}");
         let mut wanted = [PortRequest::default()];
-        house.request(&state, &Signals(&[303.15, -1e-4]), &mut wanted);
+        house.request(&Signals(&[303.15, -1e-4]), &[], &mut state, &mut wanted);
         assert!((wanted[0].m_flow_kg_s + 0.1).abs() < 1e-3, "{wanted:?}");
     }
 }

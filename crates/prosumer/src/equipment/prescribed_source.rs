@@ -4,7 +4,7 @@
 //! **Equation** `T_out = T_supply`, `m = rho V`. **Assumptions** any heat is available at once.
 //! **Sources** the published secondary side of `licklederer2021`.
 
-use crate::thermal_unit::{ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
+use crate::thermal_unit::{Exchange, ThermalUnit, UnitError, UnitInput, UnitOutput, capacity_w_k};
 use anergy_core::medium::Medium;
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
@@ -55,25 +55,45 @@ impl PrescribedSourceParams {
 impl ThermalUnit for PrescribedSource {
     fn inputs(&self) -> Vec<UnitInput> {
         vec![
-            UnitInput { name: "supply_k", unit: "k", initial: self.params.supply_k, min: 0.0 },
+            UnitInput {
+                name: "supply_k",
+                unit: "k",
+                initial: self.params.supply_k,
+                min: 0.0,
+                max: f64::INFINITY,
+                follows: None,
+            },
             UnitInput {
                 name: "v_flow_m3_s",
                 unit: "m3_s",
                 initial: self.params.v_flow_m3_s,
                 min: f64::NEG_INFINITY,
+                max: f64::INFINITY,
+                follows: None,
             },
         ]
     }
 
-    fn outputs(&self) -> &'static [UnitOutput] {
-        &[("q_flow_w", "W"), ("m_flow_kg_s", "kg s-1"), ("t_in_k", "K"), ("t_out_k", "K")]
+    fn outputs(&self) -> Vec<UnitOutput> {
+        vec![
+            UnitOutput::new("q_flow_w", "W"),
+            UnitOutput::new("m_flow_kg_s", "kg s-1"),
+            UnitOutput::new("t_in_k", "K"),
+            UnitOutput::new("t_out_k", "K"),
+        ]
     }
 
     fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
         Vec::new()
     }
 
-    fn request(&self, _state: &[f64], signals: &Signals<'_>, wanted: &mut [PortRequest]) {
+    fn request(
+        &self,
+        signals: &Signals<'_>,
+        _got: &[PortFlow],
+        _state: &mut [f64],
+        wanted: &mut [PortRequest],
+    ) {
         wanted[0] = PortRequest {
             m_flow_kg_s: signals.get(1) * self.medium.density_kg_m3,
             outlet: Outlet::Temperature(signals.get(0)),
@@ -83,16 +103,17 @@ impl ThermalUnit for PrescribedSource {
     fn advance(
         &self,
         _dt_s: f64,
-        ports: &[PortFlow],
         _signals: &Signals<'_>,
+        ports: &[PortFlow],
         _state: &mut [f64],
         out: &mut [f64],
-    ) {
+    ) -> Exchange {
         let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
         out[0] = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
         out[1] = m_flow_kg_s;
         out[2] = t_in_k;
         out[3] = t_out_k;
+        Exchange { external_w: out[0], ..Exchange::default() }
     }
 }
 
@@ -108,11 +129,11 @@ mod tests {
         let unit = unit.build(&medium).unwrap();
         let inputs: Vec<f64> = unit.inputs().iter().map(|input| input.initial).collect();
         let mut wanted = [PortRequest::default()];
-        unit.request(&[], &Signals(&inputs), &mut wanted);
+        unit.request(&Signals(&inputs), &[], &mut [], &mut wanted);
         assert!((wanted[0].m_flow_kg_s - 5.0 / 60.0).abs() < 1e-15);
         let flow = PortFlow { m_flow_kg_s: 5.0 / 60.0, t_in_k: 324.4245, t_out_k: 338.15 };
         let mut out = [0.0; 4];
-        unit.advance(1.0, &[flow], &Signals(&inputs), &mut [], &mut out);
+        unit.advance(1.0, &Signals(&inputs), &[flow], &mut [], &mut out);
         assert!((out[0] - 4803.9).abs() < 0.1);
     }
 }

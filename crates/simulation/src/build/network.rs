@@ -12,7 +12,6 @@ use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::{Coupling, Edge, GraphProblem, Network, Node, NodeKind};
 use anergy_network::soil::SoilRings;
-use anergy_prosumer::equipment::EquipmentParams;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -227,55 +226,6 @@ impl Builder<'_> {
                 if x.partner.as_deref() == Some(spec.id.as_str()))
         });
         lead.map(|lead| (lead, false))
-    }
-
-    pub(super) fn ports(&mut self, edge_ids: &HashMap<&str, usize>) -> Vec<EdgeId> {
-        let mut taken: HashMap<usize, &str> = HashMap::new();
-        let mut ports = Vec::new();
-        for spec in &self.model.units {
-            let Some(&edge) = edge_ids.get(spec.port.as_str()) else {
-                let hint = did_you_mean(&spec.port, edge_ids.keys().copied());
-                let message =
-                    format!("unit \"{}\": port names no edge: \"{}\"", spec.id, spec.port);
-                self.report(message, spec.place.of("port"), hint);
-                continue;
-            };
-            if let Some(before) = taken.insert(edge, &spec.id) {
-                let message = format!(
-                    "units \"{before}\" and \"{}\" stand on the same interface \"{}\"",
-                    spec.id, spec.port
-                );
-                let hint = "give the site a second station, or one of the units another one";
-                self.report(message, spec.place.span.range(), Some(hint.into()));
-            }
-            let params = &self.model.edges[edge].params;
-            // A heat source takes whatever flow there is, the others want one of their own.
-            let (fits, hint) = match &spec.params {
-                EquipmentParams::HeatSource(_) => (
-                    matches!(params, ElementParams::Resistance(_)),
-                    "a heat_source stands on a resistance, through which its water passes",
-                ),
-                _ => (
-                    matches!(
-                        params,
-                        ElementParams::HeatExchanger(_) | ElementParams::FlowSource(_)
-                    ),
-                    "a unit stands behind a heat_exchanger or on a flow_source",
-                ),
-            };
-            if !fits {
-                let (unit, edge) = (spec.params.kind(), params.kind());
-                let message = match &spec.params {
-                    EquipmentParams::HeatSource(_) => {
-                        format!("unit \"{}\": a {edge} cannot carry a {unit}", spec.id)
-                    }
-                    _ => format!("unit \"{}\": a {edge} cannot carry a unit", spec.id),
-                };
-                self.report(message, spec.place.of("port"), Some(hint.into()));
-            }
-            ports.push(EdgeId::from_index(edge));
-        }
-        ports
     }
 
     pub(super) fn check_graph(&mut self, network: &Network) {

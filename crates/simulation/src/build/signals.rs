@@ -6,16 +6,14 @@ use crate::document::Span;
 use crate::drivers::Driver;
 use crate::model::Place;
 use crate::model_file::NodeEntryKind;
-use crate::plan::{NodeInputs, PlannedUnit};
-use crate::temperatures::{SURROUNDINGS, Temperatures};
-use crate::wording::{in_percent, in_words, refused};
+use crate::plan::NodeInputs;
+use crate::temperatures::Temperatures;
+use crate::wording::{in_percent, in_words};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_core::units::Unit;
-use anergy_network::elements::Element;
-use anergy_network::graph::Network;
-use smol_str::{SmolStr, format_smolstr};
+use smol_str::SmolStr;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -55,76 +53,6 @@ impl Builder<'_> {
             }
         }
         inputs
-    }
-
-    pub(super) fn units(
-        &mut self,
-        edge_ids: &HashMap<&str, usize>,
-        network: &Network,
-        commands: &[Option<SignalId>],
-        signals: &mut SignalTable,
-        writers: &mut HashMap<SignalId, Writer>,
-    ) -> Vec<PlannedUnit> {
-        let mut units = Vec::new();
-        let (mut state_len, mut output_len) = (0, 0);
-        for (port, spec) in self.model.units.iter().enumerate() {
-            let equipment = match spec.params.build(&self.model.medium) {
-                Ok(equipment) => equipment,
-                Err(error) => {
-                    let what = format!("unit \"{}\" ({})", spec.id, spec.params.kind());
-                    let mut problem =
-                        refused(&what, &spec.place, error.field(), &error.to_string());
-                    let hint =
-                        error.field().and_then(|field| self.liquid().unit_hint(field, &spec.place));
-                    problem.hint = problem.hint.or(hint);
-                    self.problems.push(problem);
-                    continue;
-                }
-            };
-            let Some(&edge) = edge_ids.get(spec.port.as_str()) else { continue };
-            let first = signals.specs().len();
-            for input in equipment.inputs() {
-                let name = format!("{}.{}", spec.id, input.name);
-                let signal = if input.name == "outdoor_k" {
-                    temperature_signal(&name, input.initial, &SURROUNDINGS)
-                } else if input.unit == "k" && !input.name.contains("difference") {
-                    temperature_signal(&name, input.initial, &self.liquid())
-                } else {
-                    let (unit, max) = (input.unit, f64::INFINITY);
-                    SignalSpec {
-                        name: name.into(),
-                        unit,
-                        initial: input.initial,
-                        min: input.min,
-                        max,
-                    }
-                };
-                self.add_signal(signals, signal, &spec.place);
-            }
-            let imposes_flow = network
-                .edges
-                .get(edge)
-                .filter(|edge| matches!(edge.element, Element::FlowSource(_)))
-                .and_then(|_| commands[edge]);
-            if let Some(command) = imposes_flow {
-                let what = format_smolstr!("unit \"{}\"", spec.id);
-                writers.insert(command, Writer { what, span: spec.place.span });
-            }
-            let states = equipment.initial_state(self.model.run.initial_k).len();
-            let outputs = equipment.outputs().len();
-            units.push(PlannedUnit {
-                name: spec.id.clone(),
-                equipment,
-                port,
-                imposes_flow,
-                inputs: first..signals.specs().len(),
-                state: state_len..state_len + states,
-                outputs: output_len..output_len + outputs,
-            });
-            state_len += states;
-            output_len += outputs;
-        }
-        units
     }
 
     pub(super) fn drivers(

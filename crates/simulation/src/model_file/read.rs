@@ -12,6 +12,7 @@ mod plants;
 mod sensors;
 mod station_types;
 mod three_way_valves;
+mod units;
 
 use self::pipe_types::PipeTypes;
 use super::expand::{self, Plain};
@@ -48,6 +49,7 @@ pub(super) const SECTIONS: &[&str] = &[
     "three_way_valve",
     "interface",
     "unit",
+    "circuit",
     "sensor",
     "controller",
     "worst_point",
@@ -59,7 +61,7 @@ pub(super) const SECTIONS: &[&str] = &[
 ];
 
 /// Those that can occur several times.
-const LISTS: [&str; 16] = [
+const LISTS: [&str; 17] = [
     "site",
     "trench",
     "station",
@@ -68,6 +70,7 @@ const LISTS: [&str; 16] = [
     "three_way_valve",
     "interface",
     "unit",
+    "circuit",
     "sensor",
     "controller",
     "worst_point",
@@ -236,12 +239,14 @@ impl ModelReader<'_> {
                 interfaces.push(InterfaceSpec::new(entry, place(&what, &tree, &table)));
             }
         }
-        let units = self.units(&stations);
+        let circuits = self.circuits();
+        let units = self.units(&stations, &circuits);
         let controllers = self.controllers(&stations, &units);
         let model = Model {
             text: text.into(),
             tables: self.tables.clone(),
             units,
+            circuits,
             interfaces,
             sensors: self.sensors(),
             controllers,

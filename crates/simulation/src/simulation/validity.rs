@@ -18,9 +18,16 @@ impl Simulation {
             return Err(self.left(time, &plan.node_names[i], state.t_node_k[i]));
         }
         if let Some(port) = state.t_secondary_k.iter().position(|t_k| !liquid(t_k)) {
-            let unit = plan.units.iter().find(|unit| unit.port == port);
-            let name = unit.map_or("", |unit| unit.name.as_str());
-            return Err(self.left(time, name, state.t_secondary_k[port]));
+            return Err(self.left(time, plan.unit_at(port), state.t_secondary_k[port]));
+        }
+        if !plan.circuits.is_empty() {
+            for unit in &plan.units {
+                let ports = &self.state.unit_ports[unit.slots.clone()];
+                let ends = ports.iter().flat_map(|port| [port.t_in_k, port.t_out_k]);
+                if let Some(t_k) = ends.into_iter().find(|t_k| !liquid(t_k)) {
+                    return Err(self.left(time, &unit.name, t_k));
+                }
+            }
         }
         for (i, _) in state.surroundings_k.iter().enumerate().filter(|(_, t_k)| !liquid(t_k)) {
             let ends = state.parcels.iter(i).flat_map(|parcel| [parcel.t_a_k, parcel.t_b_k]);

@@ -1,16 +1,15 @@
-//! Nodes, edges and units: dispatched on their `kind`.
+//! Nodes and edges: dispatched on their `kind`.
 
 use super::pipe_types;
-use super::{ModelReader, Stations, place};
+use super::{ModelReader, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Key, Scalar, Tree, TreeKind};
 use crate::grammar::{Registered, Spelling};
-use crate::model::{EdgeSpec, NodeSpec, Place, UnitSpec, WrittenField};
+use crate::model::{EdgeSpec, NodeSpec, Place, WrittenField};
 use crate::model_file::expand::Plain;
 use crate::model_file::{NodeEntry, NodeEntryKind};
 use crate::wording::refused;
 use anergy_network::elements::ElementParams;
-use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
 
 /// An entry whose kind is not known yet: its words are taken out one by one.
@@ -20,7 +19,7 @@ pub(super) struct Words {
     /// What is left of it.
     pub tree: Tree,
     /// What was taken out.
-    taken: Vec<WrittenField>,
+    pub taken: Vec<WrittenField>,
     /// What it was asked for.
     pub asked: Vec<&'static str>,
 }
@@ -159,62 +158,6 @@ impl ModelReader<'_> {
         Some(())
     }
 
-    pub(super) fn units(&mut self, stations: &Stations) -> Vec<UnitSpec> {
-        let items = self.items("unit");
-        items.into_iter().filter_map(|tree| self.unit(tree, stations)).collect()
-    }
-
-    fn unit(&mut self, tree: Tree, stations: &Stations) -> Option<UnitSpec> {
-        let mut words = Words::new("unit", tree);
-        let given = |name: &str| words.tree.get(name).is_some();
-        let nowhere = !given("site") && !given("id") && !given("port");
-        let of_site = given("site");
-        if nowhere {
-            let hint = "write site = \"...\" to stand behind the station of a site, or id and port \
-                        (a heat_exchanger or flow_source) to stand on an edge";
-            let problem =
-                Diagnostic::new("unit: it is not said where it stands", words.tree.span.range());
-            self.reader.report(problem.with_hint(hint));
-            return None;
-        }
-        if let Some(field) = ["id", "port"].into_iter().find(|field| of_site && given(field)) {
-            let span = words.tree.get(field).and_then(|tree| tree.span.range());
-            let problem = Diagnostic::new(format!("unit: site and {field} are both given"), span);
-            let hint = "a unit of a site is told from others by `name`; id and port are for a unit \
-                        that stands on an edge";
-            self.reader.report(problem.with_hint(hint));
-            return None;
-        }
-        let (id, port) = if of_site {
-            let site = self.required_text(&mut words, "site")?;
-            let name = self.text_or(&mut words, "name", "unit");
-            let station = self.text_or(&mut words, "station", "station");
-            let wanted = format!("{site}.{station}");
-            let Some(edge) = stations.edges.get(&wanted) else {
-                // Its station may be there, and wrong.
-                if !stations.wrong.contains(&wanted) {
-                    let message = format!("unit: there is no station \"{wanted}\"");
-                    let field = if station == "station" { "site" } else { "station" };
-                    let place = words.taken.iter().find(|taken| taken.si() == field);
-                    let span = place.map_or(words.tree.span.range(), |taken| taken.span.range());
-                    let hint = "add a [[station]] at that site, or name it with `station`";
-                    self.reader.report(Diagnostic::new(message, span).with_hint(hint));
-                }
-                return None;
-            };
-            (format!("{site}.{name}"), edge.clone())
-        } else {
-            let id = self.required_text(&mut words, "id");
-            let port = self.required_text(&mut words, "port");
-            (id?, port?)
-        };
-        words.what = format!("unit \"{id}\"");
-        let kind = self.kind::<EquipmentParams>(&mut words)?;
-        words.what = format!("unit \"{id}\" ({kind})");
-        let (params, place) = self.parameters(words, &kind)?;
-        Some(UnitSpec { id: id.into(), port: port.into(), params, place })
-    }
-
     /// What remains of an entry, as the parameters of its kind.
     pub(super) fn parameters<P: Registered>(
         &mut self,
@@ -280,7 +223,12 @@ impl ModelReader<'_> {
         }
     }
 
-    fn text_or(&mut self, words: &mut Words, field: &'static str, otherwise: &str) -> String {
+    pub(super) fn text_or(
+        &mut self,
+        words: &mut Words,
+        field: &'static str,
+        otherwise: &str,
+    ) -> String {
         self.optional_text(words, field).unwrap_or_else(|| otherwise.to_owned())
     }
 

@@ -1,0 +1,390 @@
+//! Units: their ports on edges and in circuits, and their signals.
+
+use super::Builder;
+use super::signals::{Writer, temperature_signal};
+use crate::diagnostic::did_you_mean;
+use crate::model::{CircuitSpec, UnitSpec};
+use crate::plan::{GridPort, PlannedCircuit, PlannedUnit};
+use crate::temperatures::SURROUNDINGS;
+use crate::wording::refused;
+use anergy_core::ids::{EdgeId, SignalId};
+use anergy_core::signal::{SignalSpec, SignalTable};
+use anergy_network::elements::{Element, ElementParams};
+use anergy_network::graph::Network;
+use anergy_prosumer::circuit::{Circuit, MOST_MEMBERS};
+use anergy_prosumer::equipment::Equipment;
+use anergy_prosumer::thermal_unit::UnitPort;
+use smol_str::{SmolStr, format_smolstr};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Units that could be built, and where their ports are.
+pub(super) struct Houses {
+    /// In the order of the model; `None` after a report.
+    pub equipment: Vec<Option<Equipment>>,
+    ports: Vec<Vec<UnitPort>>,
+    slots: Vec<Range<usize>>,
+    pub circuits: Vec<PlannedCircuit>,
+    pub grid_ports: Vec<GridPort>,
+    /// Edge of each grid port.
+    pub edges: Vec<EdgeId>,
+    by_name: HashMap<SmolStr, usize>,
+}
+
+impl Houses {
+    /// Number of slots.
+    pub fn slots(&self) -> usize {
+        self.slots.last().map_or(0, |slots| slots.end)
+    }
+
+    /// Unit and port of a member of a circuit.
+    fn member(&self, name: &str) -> Option<(usize, usize)> {
+        let alone = self.by_name.get(name).copied();
+        if let Some(unit) = alone.filter(|unit| self.ports[*unit].len() == 1) {
+            return Some((unit, 0));
+        }
+        let (unit, port) = name.rsplit_once('.')?;
+        let unit = *self.by_name.get(unit)?;
+        let port = self.ports[unit].iter().position(|own| own.name == port)?;
+        Some((unit, port))
+    }
+
+    /// What members of circuits can be called.
+    fn names(&self, units: &[UnitSpec]) -> Vec<String> {
+        let names = units.iter().zip(&self.ports).flat_map(|(unit, ports)| {
+            ports.iter().map(move |port| match ports.len() {
+                1 => unit.id.to_string(),
+                _ => format!("{}.{}", unit.id, port.name),
+            })
+        });
+        names.collect()
+    }
+}
+
+impl Builder<'_> {
+    /// Builds the units and finds the place of each of their ports.
+    pub(super) fn houses(&mut self, edge_ids: &HashMap<&str, usize>) -> Houses {
+        let units = &self.model.units;
+        let equipment: Vec<_> = units.iter().map(|spec| self.equipment(spec)).collect();
+        let ports: Vec<_> = equipment
+            .iter()
+            .map(|unit| unit.as_ref().map_or(Vec::new(), |unit| unit.ports()))
+            .collect();
+        let mut end = 0;
+        let slots = ports.iter().map(|ports| {
+            let first = end;
+            end += ports.len();
+            first..end
+        });
+        let slots = slots.collect();
+        let mut houses = Houses {
+            equipment,
+            ports,
+            slots,
+            circuits: Vec::new(),
+            grid_ports: Vec::new(),
+            edges: Vec::new(),
+            by_name: units.iter().enumerate().map(|(i, unit)| (unit.id.clone(), i)).collect(),
+        };
+        let mut circuit_of: Vec<Option<&str>> = vec![None; houses.slots()];
+        for spec in &self.model.circuits {
+            let circuit = self.circuit(spec, &houses, &mut circuit_of);
+            houses.circuits.extend(circuit);
+        }
+        houses.circuits.sort_by_key(|circuit| circuit.leads.is_empty());
+        self.grid_ports(&mut houses, &circuit_of, edge_ids);
+        houses
+    }
+
+    fn equipment(&mut self, spec: &UnitSpec) -> Option<Equipment> {
+        match spec.params.build(&self.model.medium) {
+            Ok(equipment) => Some(equipment),
+            Err(error) => {
+                let what = format!("unit \"{}\" ({})", spec.id, spec.params.kind());
+                let mut problem = refused(&what, &spec.place, error.field(), &error.to_string());
+                let hint =
+                    error.field().and_then(|field| self.liquid().unit_hint(field, &spec.place));
+                problem.hint = problem.hint.or(hint);
+                self.problems.push(problem);
+                None
+            }
+        }
+    }
+
+    /// A circuit with its members; `None` after a report.
+    fn circuit<'m>(
+        &mut self,
+        spec: &'m CircuitSpec,
+        houses: &Houses,
+        circuit_of: &mut [Option<&'m str>],
+    ) -> Option<PlannedCircuit> {
+        let what = format!("circuit \"{}\"", spec.id);
+        let through = spec.place.of("through");
+        let mut members = Vec::new();
+        for name in &spec.through {
+            let Some((unit, port)) = houses.member(name) else {
+                let of_wrong = |(unit, spec): (usize, &UnitSpec)| {
+                    houses.equipment[unit].is_none() && name.starts_with(spec.id.as_str())
+                };
+                if !self.model.units.iter().enumerate().any(of_wrong) {
+                    let names = houses.names(&self.model.units);
+                    let hint = did_you_mean(name, names.iter().map(String::as_str))
+                        .or_else(|| self.ports_hint(name, houses));
+                    let message = format!("{what}: there is no port \"{name}\"");
+                    self.report(message, through.clone(), hint);
+                }
+                return None;
+            };
+            let slot = houses.slots[unit].start + port;
+            if let Some(before) = circuit_of[slot].replace(&spec.id) {
+                let message = match before == spec.id {
+                    true => format!("{what}: passes \"{name}\" twice"),
+                    false => format!("{what}: \"{name}\" is in circuit \"{before}\" already"),
+                };
+                let hint = "each port is in one circuit: a storage takes several `ports`";
+                self.report(message, through.clone(), Some(hint.into()));
+                return None;
+            }
+            members.push((unit, port, slot));
+        }
+        if !(2..=MOST_MEMBERS).contains(&members.len()) {
+            let message = format!("{what}: passes {} ports", members.len());
+            let hint = format!("a circuit passes 2 to {MOST_MEMBERS}, and returns to the first");
+            self.report(message, through, Some(hint));
+            return None;
+        }
+        let port = |&(unit, port, _): &(usize, usize, usize)| &houses.ports[unit][port];
+        let mut drivers = members.iter().filter(|member| port(member).sets_flow);
+        let driver = drivers.next();
+        let names: Vec<&str> = spec.through.iter().map(SmolStr::as_str).collect();
+        let drivers = usize::from(driver.is_some()) + drivers.count();
+        match (drivers, spec.v_flow_m3_s) {
+            (1, None) | (0, Some(0.0..)) => {}
+            (0, None) => {
+                let message = format!("{what}: nothing sets its flow");
+                let hint = format!("none of {} has a pump: give v_flow_l_min", names.join(", "));
+                self.report(message, through, Some(hint));
+                return None;
+            }
+            (0, Some(v_flow)) => {
+                let message = format!("{what}: v_flow_m3_s = {v_flow} must not be negative");
+                self.report(message, spec.place.of("v_flow_m3_s"), None);
+                return None;
+            }
+            _ => {
+                let message = format!("{what}: its flow is set more than once");
+                let setting =
+                    members.iter().zip(&names).filter(|(member, _)| port(member).sets_flow);
+                let mut setting: Vec<&str> = setting.map(|(_, name)| *name).collect();
+                setting.extend(spec.v_flow_m3_s.map(|_| "v_flow_m3_s"));
+                let hint = format!("by {}: one is enough", setting.join(" and "));
+                self.report(message, through, Some(hint));
+                return None;
+            }
+        }
+        Some(PlannedCircuit {
+            name: spec.id.clone(),
+            circuit: Circuit {
+                members: members.iter().map(|(_, _, slot)| *slot).collect(),
+                driver: driver.map(|(_, _, slot)| *slot),
+            },
+            v_flow: None,
+            leads: members
+                .iter()
+                .filter(|member| port(member).leads)
+                .map(|(unit, port, _)| (*unit, *port))
+                .collect(),
+        })
+    }
+
+    /// The ports of the unit that a name begins with.
+    fn ports_hint(&self, name: &str, houses: &Houses) -> Option<String> {
+        let unit = self.model.units.iter().position(|unit| {
+            name.strip_prefix(unit.id.as_str())
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        })?;
+        let ports: Vec<&str> = houses.ports[unit].iter().map(|port| port.name.as_str()).collect();
+        Some(format!("the ports of \"{}\" are {}", self.model.units[unit].id, ports.join(", ")))
+    }
+
+    /// Ports that are in no circuit stand on an edge.
+    fn grid_ports(
+        &mut self,
+        houses: &mut Houses,
+        circuit_of: &[Option<&str>],
+        edge_ids: &HashMap<&str, usize>,
+    ) {
+        let mut taken: HashMap<usize, &str> = HashMap::new();
+        for (unit, spec) in self.model.units.iter().enumerate() {
+            if houses.equipment[unit].is_none() {
+                continue;
+            }
+            let what = format!("unit \"{}\"", spec.id);
+            let mut left = houses.slots[unit].clone().filter(|slot| circuit_of[*slot].is_none());
+            let (first, more) = (left.next(), left.next());
+            let Some(slot) = first else {
+                // The site may have a station that is another unit's.
+                let given = ["station", "port"].into_iter().find(|field| spec.place.has(field));
+                if let Some(field) = given {
+                    let message = format!("{what}: all its ports are in circuits");
+                    let hint = format!("leave `{field}` out, or one of the ports");
+                    self.report(message, spec.place.of(field), Some(hint));
+                }
+                continue;
+            };
+            let name =
+                |slot: usize| houses.ports[unit][slot - houses.slots[unit].start].name.clone();
+            if more.is_some() || spec.port.is_empty() {
+                let free: Vec<String> = std::iter::once(slot)
+                    .chain(more)
+                    .map(|slot| format!("\"{}\"", name(slot)))
+                    .collect();
+                let message =
+                    format!("{what}: its port {} is in no circuit", free.join(" as well as "));
+                let hint = match spec.port.is_empty() {
+                    true => "pass it by a [[circuit]], or give the site a [[station]] for it",
+                    false => {
+                        "one port can stand behind the station: pass the others by a [[circuit]]"
+                    }
+                };
+                self.report(message, spec.place.span.range(), Some(hint.into()));
+                continue;
+            }
+            let Some(&edge) = edge_ids.get(spec.port.as_str()) else {
+                let hint = did_you_mean(&spec.port, edge_ids.keys().copied());
+                let message = format!("{what}: port names no edge: \"{}\"", spec.port);
+                self.report(message, spec.place.of("port"), hint);
+                continue;
+            };
+            if let Some(before) = taken.insert(edge, &spec.id) {
+                let message = format!(
+                    "units \"{before}\" and \"{}\" stand on the same interface \"{}\"",
+                    spec.id, spec.port
+                );
+                let hint = "give the site a second station, or one of the units another one";
+                self.report(message, spec.place.span.range(), Some(hint.into()));
+            }
+            let sets_flow = houses.ports[unit][slot - houses.slots[unit].start].sets_flow;
+            self.check_carrier(spec, sets_flow, edge);
+            houses.grid_ports.push(GridPort { unit, slot, imposes_flow: None });
+            houses.edges.push(EdgeId::from_index(edge));
+        }
+    }
+
+    /// A unit that sets the flow stands where it can be set, one that takes what comes where something comes.
+    fn check_carrier(&mut self, spec: &UnitSpec, sets_flow: bool, edge: usize) {
+        let (unit, model) = (spec.params.kind(), self.model);
+        let carrier = &model.edges[edge];
+        let (fits, hint) = match (&carrier.params, sets_flow) {
+            (ElementParams::HeatExchanger(_) | ElementParams::FlowSource(_), true) => (true, ""),
+            (_, true) => (false, "a unit stands behind a heat_exchanger or on a flow_source"),
+            (params, false) => (
+                matches!(params, ElementParams::Resistance(_)),
+                "it stands on a resistance, through which its water passes",
+            ),
+        };
+        if !fits {
+            let edge = carrier.params.kind();
+            let (message, hint) = match sets_flow {
+                true => {
+                    (format!("unit \"{}\": a {edge} cannot carry a unit", spec.id), hint.into())
+                }
+                false => (
+                    format!("unit \"{}\": a {edge} cannot carry a {unit}", spec.id),
+                    hint.replacen("it", &format!("a {unit}"), 1),
+                ),
+            };
+            self.report(message, spec.place.of("port"), Some(hint));
+        }
+    }
+
+    /// The units with their signals.
+    pub(super) fn units(
+        &mut self,
+        houses: &mut Houses,
+        network: &Network,
+        commands: &[Option<SignalId>],
+        signals: &mut SignalTable,
+        writers: &mut HashMap<SignalId, Writer>,
+    ) -> Vec<PlannedUnit> {
+        let mut units = Vec::new();
+        let (mut state_len, mut output_len) = (0, 0);
+        for (i, spec) in self.model.units.iter().enumerate() {
+            let Some(equipment) = houses.equipment[i].take() else { continue };
+            let first = signals.specs().len();
+            for input in equipment.inputs() {
+                let name = format!("{}.{}", spec.id, input.name);
+                let around = input.name.contains("outdoor") || input.name.contains("ambient");
+                let signal = if input.unit == "k" && !input.name.contains("difference") {
+                    let range = if around { SURROUNDINGS } else { self.liquid() };
+                    temperature_signal(&name, input.initial, &range)
+                } else {
+                    SignalSpec {
+                        name: name.into(),
+                        unit: input.unit,
+                        initial: input.initial,
+                        min: input.min,
+                        max: input.max,
+                    }
+                };
+                self.add_signal(signals, signal, &spec.place);
+            }
+            let states = equipment.initial_state(self.model.run.initial_k).len();
+            let outputs = equipment.outputs().len();
+            units.push(PlannedUnit {
+                name: spec.id.clone(),
+                equipment,
+                ports: std::mem::take(&mut houses.ports[i]),
+                slots: houses.slots[i].clone(),
+                inputs: first..signals.specs().len(),
+                state: state_len..state_len + states,
+                outputs: output_len..output_len + outputs,
+            });
+            state_len += states;
+            output_len += outputs;
+        }
+        for (port, edge) in houses.grid_ports.iter_mut().zip(&houses.edges) {
+            let imposes = network.edges.get(edge.index());
+            let imposes = imposes.filter(|edge| matches!(edge.element, Element::FlowSource(_)));
+            port.imposes_flow = imposes.and_then(|_| commands[edge.index()]);
+            if let Some(command) = port.imposes_flow {
+                let spec = &self.model.units[port.unit];
+                let what = format_smolstr!("unit \"{}\"", spec.id);
+                writers.insert(command, Writer { what, span: spec.place.span });
+            }
+        }
+        for circuit in &mut houses.circuits {
+            let spec = self.model.circuits.iter().find(|spec| spec.id == circuit.name);
+            if let Some((spec, initial)) = spec.and_then(|spec| Some((spec, spec.v_flow_m3_s?))) {
+                let name = format!("{}.v_flow_m3_s", spec.id);
+                let signal = SignalSpec {
+                    name: name.into(),
+                    unit: "m3_s",
+                    initial,
+                    min: 0.0,
+                    max: f64::INFINITY,
+                };
+                circuit.v_flow = Some(self.add_signal(signals, signal, &spec.place));
+            }
+        }
+        units
+    }
+
+    /// Inputs that follow another signal where nothing else drives them: to, from.
+    pub(super) fn follows(
+        &self,
+        units: &[PlannedUnit],
+        signals: &SignalTable,
+        writers: &HashMap<SignalId, Writer>,
+    ) -> Vec<(SignalId, SignalId)> {
+        let inputs = units.iter().flat_map(|unit| {
+            let ids = unit.inputs.clone().map(SignalId::from_index);
+            ids.zip(unit.equipment.inputs())
+        });
+        let follows = inputs.filter_map(|(to, input)| {
+            let from = signals.find(input.follows?)?;
+            (!writers.contains_key(&to)).then_some((to, from))
+        });
+        follows.collect()
+    }
+}

@@ -1,0 +1,100 @@
+//! Houses: units say what they want of their ports, circuits go round, units take what they got.
+
+use super::Simulation;
+use crate::error::RunError;
+use anergy_core::signal::Signals;
+use anergy_prosumer::circuit::Undefined;
+
+impl Simulation {
+    /// Units say what they want of their ports.
+    pub(super) fn request_units(&mut self) {
+        let (plan, state) = (&self.plan, &mut self.state);
+        for unit in &plan.units {
+            unit.equipment.request(
+                &Signals(&state.signals[unit.inputs.clone()]),
+                &state.unit_ports[unit.slots.clone()],
+                &mut state.unit_states[unit.state.clone()],
+                &mut self.wanted[unit.slots.clone()],
+            );
+        }
+        for (port, place) in plan.grid_ports.iter().enumerate() {
+            let wanted = self.wanted[place.slot];
+            state.network.requests[port] = wanted;
+            if let Some(command) = place.imposes_flow {
+                state.signals[command.index()] = wanted.m_flow_kg_s;
+            }
+        }
+    }
+
+    /// Units hear what the network gave, circuits go round, and units advance.
+    pub(super) fn advance_units(&mut self, dt_s: f64) -> Result<(), RunError> {
+        for (port, place) in self.plan.grid_ports.iter().enumerate() {
+            self.state.unit_ports[place.slot] = self.state.network.port_flows[port];
+        }
+        for port in 0..self.plan.grid_ports.len() {
+            let place = self.plan.grid_ports[port];
+            let unit = &self.plan.units[place.unit];
+            let port = place.slot - unit.slots.start;
+            if unit.ports[port].leads {
+                self.respond(place.unit, port);
+            }
+        }
+        for circuit in 0..self.plan.circuits.len() {
+            self.go_round(circuit)?;
+        }
+        let (plan, state) = (&self.plan, &mut self.state);
+        for (i, unit) in plan.units.iter().enumerate() {
+            state.unit_exchange[i] = unit.equipment.advance(
+                dt_s,
+                &Signals(&state.signals[unit.inputs.clone()]),
+                &state.unit_ports[unit.slots.clone()],
+                &mut state.unit_states[unit.state.clone()],
+                &mut state.unit_outputs[unit.outputs.clone()],
+            );
+        }
+        Ok(())
+    }
+
+    /// Tells a unit what its leading port got.
+    fn respond(&mut self, unit: usize, port: usize) {
+        let (unit, state) = (&self.plan.units[unit], &mut self.state);
+        unit.equipment.respond(
+            port,
+            &Signals(&state.signals[unit.inputs.clone()]),
+            &state.unit_ports[unit.slots.clone()],
+            &mut state.unit_states[unit.state.clone()],
+            &mut self.wanted[unit.slots.clone()],
+        );
+    }
+
+    /// The temperatures around a circuit.
+    fn go_round(&mut self, i: usize) -> Result<(), RunError> {
+        let planned = &self.plan.circuits[i];
+        let medium = &self.plan.network.medium;
+        let m_flow_kg_s = match planned.v_flow {
+            Some(signal) => self.state.signals[signal.index()] * medium.density_kg_m3,
+            None => planned.circuit.m_flow_kg_s(&self.wanted),
+        };
+        let solved = planned.circuit.solve(
+            m_flow_kg_s,
+            medium.heat_capacity_j_kg_k,
+            &self.wanted,
+            &mut self.state.unit_ports,
+        );
+        solved.map_err(|Undefined| RunError::UndefinedCircuit {
+            time: self.state.time.to_string(),
+            circuit: planned.name.to_string(),
+        })?;
+        for lead in 0..planned.leads.len() {
+            let (unit, port) = self.plan.circuits[i].leads[lead];
+            self.respond(unit, port);
+        }
+        Ok(())
+    }
+
+    /// Heat that the units hold, J above 0 degC.
+    pub(crate) fn units_stored_j(&self) -> f64 {
+        let units = self.plan.units.iter();
+        units.map(|unit| unit.equipment.stored_j(&self.state.unit_states[unit.state.clone()])).sum()
+    }
+}
