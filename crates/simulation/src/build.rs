@@ -10,21 +10,21 @@ mod pressure;
 mod pulses;
 mod regulators;
 mod signals;
+mod stations;
 mod units;
 
 pub(crate) use network::pipe_temperatures;
 
 use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels;
-use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{Model, Place};
 use crate::model_file::InitialState;
 use crate::plan::{self, EdgeOnMap, Ends, NodeOnMap, Plan, PlannedUnit};
 use crate::simulation::{SwingState, watches};
 use crate::state::{Reading, State};
-use crate::wording::refused;
 use anergy_core::clock::Time;
-use anergy_core::ids::{EdgeId, SignalId};
+use anergy_core::ids::SignalId;
 use anergy_core::port::PortFlow;
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::ElementParams;
@@ -198,7 +198,7 @@ impl Builder<'_> {
             node_names: model.nodes.iter().map(|node| node.entry.id.clone()).collect(),
             edge_names: model.edges.iter().map(|edge| edge.id.clone()).collect(),
             station_names: model.interfaces.iter().map(|spec| spec.id.clone()).collect(),
-            station_of_valve: interlocks(model.edges.len(), &stations),
+            station_of_valve: stations::interlocks(model.edges.len(), &stations),
             stations,
             units,
             grid_ports: houses.grid_ports,
@@ -264,42 +264,6 @@ impl Builder<'_> {
         plan.swing_watches = watches(&plan);
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
         Some(plan)
-    }
-
-    fn stations(&mut self, edge_ids: &HashMap<&str, usize>) -> Vec<Station> {
-        let mut stations = Vec::new();
-        for spec in &self.model.interfaces {
-            let what = format!("interface \"{}\"", spec.id);
-            let what = spec.place.entry_or(&what);
-            let mut find = |field: &str, name: &str| {
-                let found = edge_ids.get(name).copied();
-                if found.is_none() {
-                    let hint = did_you_mean(name, edge_ids.keys().copied());
-                    let message = format!("{what}: {field} names no edge: \"{name}\"");
-                    self.report(message, spec.place.of(field), hint);
-                }
-                found
-            };
-            let edge = find("edge", &spec.edge);
-            let pump = spec.pump.as_deref().and_then(|name| find("pump", name));
-            let valve = spec.valve.as_deref().and_then(|name| find("valve", name));
-            if let Some(flow) = spec.requested_flow_m3_s.filter(|flow| *flow <= 0.0) {
-                let field = "requested_flow_m3_s";
-                let message = format!("{field} = {flow} must be positive");
-                self.problems.push(refused(what, &spec.place, Some(field), &message));
-            }
-            if let Some(edge) = edge {
-                stations.push(Station {
-                    edge: EdgeId::from_index(edge),
-                    pump: pump.map(EdgeId::from_index),
-                    valve: valve.map(EdgeId::from_index),
-                    requested_m_flow_kg_s: spec
-                        .requested_flow_m3_s
-                        .map(|flow| flow * self.model.medium.density_kg_m3),
-                });
-            }
-        }
-        stations
     }
 
     fn run_times(&mut self) -> (Step, Time, Time) {
@@ -386,17 +350,6 @@ fn without_parts(model: &Model) -> Network {
 
 fn article(word: &str) -> &'static str {
     if word.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
-}
-
-/// Which edges wait for the pump of which station.
-fn interlocks(edges: usize, stations: &[Station]) -> Vec<Option<usize>> {
-    let mut station_of_valve = vec![None; edges];
-    for (i, station) in stations.iter().enumerate() {
-        if let (Some(_), Some(valve)) = (station.pump, station.valve) {
-            station_of_valve[valve.index()] = Some(i);
-        }
-    }
-    station_of_valve
 }
 
 fn start_unix_ns(model: &Model) -> i64 {

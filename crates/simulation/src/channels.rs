@@ -1,5 +1,7 @@
 //! What can be recorded and measured: every quantity of every component by name.
 
+mod units;
+
 use crate::plan::Plan;
 use crate::simulation::{Said, stored_j};
 use crate::state::State;
@@ -8,7 +10,6 @@ use anergy_core::port::Port;
 use anergy_core::recorder::{Channel, ChannelGroup};
 use anergy_network::elements::Element;
 use anergy_network::graph::Coupling;
-use anergy_prosumer::thermal_unit::UnitPort;
 
 /// Where the value of a channel comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -168,23 +169,7 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     for (i, point) in plan.worst_points.iter().enumerate() {
         list.add(ChannelGroup::Interfaces, &point.name, "dp_pa", "Pa", Source::WorstPoint(i));
     }
-    for unit in &plan.units {
-        for (k, output) in unit.equipment.outputs().iter().enumerate() {
-            let source = Source::UnitOutput(unit.outputs.start + k);
-            list.add(ChannelGroup::Units, &unit.name, &output.name, output.unit, source);
-        }
-        for (port, slot) in unit.ports.iter().zip(unit.slots.clone()) {
-            if port.name == UnitPort::ONLY.name {
-                continue;
-            }
-            let name = format!("{}.{}", unit.name, port.name);
-            let group = ChannelGroup::Units;
-            list.add(group, &name, "m_flow_kg_s", "kg s-1", Source::UnitFlow(slot));
-            list.add(group, &name, "t_in_k", "K", Source::UnitInlet(slot));
-            list.add(group, &name, "t_out_k", "K", Source::UnitOutlet(slot));
-            list.add(group, &name, "q_flow_w", "W", Source::UnitHeat(slot));
-        }
-    }
+    units::outputs(&mut list, plan);
     for (i, spec) in plan.signals.specs().iter().enumerate() {
         let (component, quantity) = spec.name.rsplit_once('.').unwrap_or(("", &spec.name));
         let unit = udunits(spec.unit);
@@ -212,16 +197,7 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(ChannelGroup::Balances, "network", "friction_w", "W", Source::TotalFriction);
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
     }
-    if plan.has_houses() {
-        for (quantity, unit, source) in [
-            ("units_electric_w", "W", Source::UnitsElectric),
-            ("units_external_w", "W", Source::UnitsExternal),
-            ("units_electric_j", "J", Source::Cumulative(Cumulative::UnitsElectric)),
-            ("units_external_j", "J", Source::Cumulative(Cumulative::UnitsExternal)),
-        ] {
-            list.add(ChannelGroup::Balances, "network", quantity, unit, source);
-        }
-    }
+    units::balances(&mut list, plan);
     sensors(&mut list, plan);
     for (i, watch) in plan.swing_watches.iter().enumerate() {
         let name = &plan.edge_names[watch.edge];

@@ -1,6 +1,7 @@
 //! The plan of a simulation: everything that does not change during a run, by id.
 
 mod control;
+mod houses;
 
 use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels::{self, Source};
@@ -17,47 +18,10 @@ use anergy_network::ground::Seasons;
 use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
-use anergy_prosumer::circuit::Circuit;
-use anergy_prosumer::equipment::Equipment;
-use anergy_prosumer::thermal_unit::UnitPort;
 pub(crate) use control::{PlannedController, PlannedSensor, SwingWatch};
+pub(crate) use houses::{GridPort, PlannedCircuit, PlannedUnit};
 use smol_str::SmolStr;
-use std::ops::Range;
 use std::sync::{Arc, OnceLock};
-
-/// A unit with its places in the flat state.
-#[derive(Debug, Clone)]
-pub(crate) struct PlannedUnit {
-    pub name: SmolStr,
-    pub equipment: Equipment,
-    /// What is known of its ports, in their order.
-    pub ports: Vec<UnitPort>,
-    /// Slots of its ports.
-    pub slots: Range<usize>,
-    pub inputs: Range<usize>,
-    pub state: Range<usize>,
-    pub outputs: Range<usize>,
-}
-
-/// A port of a unit that stands on an edge of the network.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct GridPort {
-    pub unit: usize,
-    pub slot: usize,
-    /// The command of its edge, where its request is that edge's flow (and not its own circulation).
-    pub imposes_flow: Option<SignalId>,
-}
-
-/// A circuit of a house.
-#[derive(Debug, Clone)]
-pub(crate) struct PlannedCircuit {
-    pub name: SmolStr,
-    pub circuit: Circuit,
-    /// Flow of its own pump, m3/s.
-    pub v_flow: Option<SignalId>,
-    /// Units with ports in it that lead, and those ports.
-    pub leads: Vec<(usize, usize)>,
-}
 
 /// Pairs of nodes of which the smallest pressure difference is of interest.
 #[derive(Debug, Clone)]
@@ -307,19 +271,6 @@ impl Plan {
     pub(crate) fn total_units_w(&self, state: &NetworkState) -> f64 {
         let cp = self.network.medium.heat_capacity_j_kg_k;
         state.port_flows.iter().map(|f| f.m_flow_kg_s.abs() * cp * (f.t_out_k - f.t_in_k)).sum()
-    }
-
-    /// Name of the unit at a port of the network.
-    pub(crate) fn unit_at(&self, port: usize) -> &str {
-        self.grid_ports.get(port).map_or("", |place| self.units[place.unit].name.as_str())
-    }
-
-    /// Whether there are units that store heat or draw electricity: more than what loads and sources do.
-    pub(crate) fn has_houses(&self) -> bool {
-        self.units.iter().any(|unit| {
-            unit.ports.as_slice() != [UnitPort::ONLY]
-                && unit.ports.as_slice() != [UnitPort { sets_flow: false, ..UnitPort::ONLY }]
-        })
     }
 
     /// Heat from the losses of pumps, W: a unit never stands on a pump.

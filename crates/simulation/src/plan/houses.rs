@@ -1,0 +1,58 @@
+//! Units, their ports and the circuits through them.
+
+use super::Plan;
+use anergy_core::ids::SignalId;
+use anergy_prosumer::circuit::Circuit;
+use anergy_prosumer::equipment::Equipment;
+use anergy_prosumer::thermal_unit::UnitPort;
+use smol_str::SmolStr;
+use std::ops::Range;
+
+/// A unit with its places in the flat state.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedUnit {
+    pub name: SmolStr,
+    pub equipment: Equipment,
+    /// What is known of its ports, in their order.
+    pub ports: Vec<UnitPort>,
+    /// Slots of its ports.
+    pub slots: Range<usize>,
+    pub inputs: Range<usize>,
+    pub state: Range<usize>,
+    pub outputs: Range<usize>,
+}
+
+/// A port of a unit that stands on an edge of the network.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GridPort {
+    pub unit: usize,
+    pub slot: usize,
+    /// The command of its edge, where its request is that edge's flow (and not its own circulation).
+    pub imposes_flow: Option<SignalId>,
+}
+
+/// A circuit of a house.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedCircuit {
+    pub name: SmolStr,
+    pub circuit: Circuit,
+    /// Flow of its own pump, m3/s.
+    pub v_flow: Option<SignalId>,
+    /// Units with ports in it that lead, and those ports.
+    pub leads: Vec<(usize, usize)>,
+}
+
+impl Plan {
+    /// Name of the unit at a port of the network.
+    pub(crate) fn unit_at(&self, port: usize) -> &str {
+        self.grid_ports.get(port).map_or("", |place| self.units[place.unit].name.as_str())
+    }
+
+    /// Whether there are units that store heat or draw electricity: more than what loads and sources do.
+    pub(crate) fn has_houses(&self) -> bool {
+        self.units.iter().any(|unit| {
+            unit.ports.as_slice() != [UnitPort::ONLY]
+                && unit.ports.as_slice() != [UnitPort { sets_flow: false, ..UnitPort::ONLY }]
+        })
+    }
+}
