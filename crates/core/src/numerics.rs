@@ -5,3 +5,4 @@ mod elimination;
 pub mod interpolate;
 pub mod regularize;
 pub mod sparse;
+pub mod symmetric;
