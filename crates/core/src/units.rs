@@ -49,6 +49,7 @@ pub const UNITS: &[Unit] = &[
     unit("min", "s", 60.0, 1.0),
     unit("h", "s", 3600.0, 1.0),
     unit("d", "s", 86_400.0, 1.0),
+    unit("1_h", "1_s", 1.0, 3600.0),
     unit("deg", "rad", std::f64::consts::PI, 180.0),
     unit("percent", "", 1.0, 100.0),
     Unit { suffix: "degc", si: "k", factor: 1.0, divisor: 1.0, offset: ZERO_CELSIUS_K },
@@ -57,7 +58,7 @@ pub const UNITS: &[Unit] = &[
 /// SI suffixes that occur in names, longest first where one ends in another.
 pub const SI_SUFFIXES: &[&str] = &[
     "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "kg_m3", "m2_k_w", "w_m2_k", "m3_s", "m2_s", "m_s",
-    "kg_s", "pa_s", "w_k", "w_m2", "rad", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
+    "kg_s", "pa_s", "1_s", "w_k", "w_m2", "rad", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
 ];
 
 impl Unit {
