@@ -1,6 +1,7 @@
 //! REGISTRY of the thermal units: adding one is one file, its `mod` line and its line below.
 
 pub mod building;
+pub mod cooling_load;
 pub mod heat_load;
 pub mod heat_source;
 pub mod ideal_house;
@@ -15,8 +16,9 @@ anergy_core::registry! {
         PrescribedSource("prescribed_source", prescribed_source::PrescribedSource, prescribed_source::PrescribedSourceParams),
         HeatLoad("heat_load", heat_load::HeatLoad, heat_load::HeatLoadParams),
         HeatSource("heat_source", heat_source::HeatSource, heat_source::HeatSourceParams),
-        Building("building", building::Building, building::BuildingParams),
         IdealHouse("ideal_house", ideal_house::IdealHouse, ideal_house::IdealHouseParams),
+        CoolingLoad("cooling_load", cooling_load::CoolingLoad, cooling_load::CoolingLoadParams),
+        Building("building", building::Building, building::BuildingParams),
     }
 }
 

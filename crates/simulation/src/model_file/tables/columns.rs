@@ -75,11 +75,17 @@ pub(super) fn guess(content: Content, name: &str) -> String {
     };
     candidates.extend(own.iter().map(|name| (*name).to_owned()));
     // The field of a part or of the unit, without the way to it.
-    let ways: Vec<&str> = candidates
+    let mut ways: Vec<&str> = Vec::new();
+    let known = candidates
         .iter()
         .filter(|known| known.rsplit_once('.').is_some_and(|(_, field)| field == name))
-        .map(String::as_str)
-        .collect();
+        .map(String::as_str);
+    for way in known {
+        // Several kinds of units have the field.
+        if !ways.contains(&way) {
+            ways.push(way);
+        }
+    }
     if !ways.is_empty() {
         return format!("say of what: {}", ways.join(" or "));
     }
