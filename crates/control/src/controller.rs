@@ -102,6 +102,11 @@ pub trait Controller {
         self.output_limits(output, inputs.limits[output])
     }
 
+    /// Whether these set points switch it off: it then holds nothing.
+    fn is_off(&self, _set_points: &[f64]) -> bool {
+        false
+    }
+
     /// Whether the outputs would stay: in a steady state every miss is zero, or its output at the limit
     /// that it pushes against.
     fn balance(&self, inputs: &Inputs, outputs: &[f64], balance: &mut [Balance]);

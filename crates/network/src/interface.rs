@@ -32,8 +32,58 @@ pub struct Station {
     pub pump: Option<EdgeId>,
     /// The valve that extracts; it stays closed until the pump has run down.
     pub valve: Option<EdgeId>,
+    /// The pump that extracts.
+    pub extraction_pump: Option<EdgeId>,
     /// Flow the pump means to deliver, kg/s; decides the flag.
     pub requested_m_flow_kg_s: Option<f64>,
+}
+
+/// Delivers what a unit asks for in its direction, with a pause between the directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Length of the pause, s; without one the direction changes within a step.
+    pub dead_time_s: f64,
+}
+
+/// What is asked of a station, kg/s.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Demand {
+    /// Flow of feed-in.
+    pub feed_in_kg_s: f64,
+    /// Flow of extraction.
+    pub extraction_kg_s: f64,
+}
+
+impl Demand {
+    /// Flow with its sign: positive in feed-in.
+    pub fn m_flow_kg_s(&self) -> f64 {
+        self.feed_in_kg_s - self.extraction_kg_s
+    }
+}
+
+impl Drive {
+    /// What the pumps are told in a step, given what the unit wants (positive in feed-in).
+    pub fn demand(&self, wanted_kg_s: f64, memory: &StationState) -> Demand {
+        let against = wanted_kg_s * memory.direction < 0.0 && self.dead_time_s > 0.0;
+        if against || memory.pause_s > 0.0 {
+            return Demand::default();
+        }
+        Demand { feed_in_kg_s: wanted_kg_s.max(0.0), extraction_kg_s: (-wanted_kg_s).max(0.0) }
+    }
+
+    /// Remembers the direction after a step.
+    pub fn remember(&self, wanted_kg_s: f64, dt_s: f64, memory: &mut StationState) {
+        if wanted_kg_s == 0.0 {
+            memory.pause_s = (memory.pause_s - dt_s).max(0.0);
+        } else if wanted_kg_s * memory.direction < 0.0 {
+            // The step itself was a part of the pause.
+            memory.pause_s = (self.dead_time_s - dt_s).max(0.0);
+            memory.direction = wanted_kg_s.signum();
+        } else {
+            memory.direction = wanted_kg_s.signum();
+            memory.pause_s = (memory.pause_s - dt_s).max(0.0);
+        }
+    }
 }
 
 /// What a station remembers.
@@ -45,6 +95,12 @@ pub struct StationState {
     pub held_back_s: f64,
     /// How long the flag has been set in this run, s.
     pub blocked_s: f64,
+    /// Direction in which it delivered last: 1 feed-in, -1 extraction, 0 none yet.
+    direction: f64,
+    /// What is left of the pause between two directions, s.
+    pub pause_s: f64,
+    /// What the unit behind a driven station asked of it in the last step.
+    pub demand: Demand,
 }
 
 impl Station {
@@ -60,7 +116,18 @@ impl Station {
         self.pump.is_none_or(|pump| state.position[pump.index()] < RUN_DOWN)
     }
 
-    /// Updates the flag after a step; `command` is the command of the pump. Returns the new flag
+    /// The pump or valve that delivers now, the flow that is wanted of it, kg/s, and its direction.
+    pub fn delivery(&self, memory: &StationState) -> Option<(EdgeId, f64, f64)> {
+        let Demand { feed_in_kg_s, extraction_kg_s } = memory.demand;
+        if extraction_kg_s > 0.0 {
+            return Some((self.extraction_pump.or(self.valve)?, extraction_kg_s, -1.0));
+        }
+        let wanted =
+            if feed_in_kg_s > 0.0 { Some(feed_in_kg_s) } else { self.requested_m_flow_kg_s };
+        Some((self.pump?, wanted?, 1.0))
+    }
+
+    /// Updates the flag after a step; `command` is the command of what delivers. Returns the new flag
     /// when it changed.
     pub fn watch(
         &self,
@@ -70,14 +137,15 @@ impl Station {
         dt_s: f64,
         memory: &mut StationState,
     ) -> Option<bool> {
-        let (Some(pump), Some(wanted)) = (self.pump, self.requested_m_flow_kg_s) else {
-            return None;
+        let Some((pump, wanted, direction)) = self.delivery(memory) else {
+            memory.held_back_s = 0.0;
+            return std::mem::take(&mut memory.blocked).then_some(false);
         };
         let element = &network.edges[pump.index()].element;
         let speed = state.position[pump.index()];
         let limit = element.actuator().map_or(1.0, |actuator| actuator.max);
         let target = element.target_at_flow(command, state.m_flow_kg_s[pump.index()]);
-        let flow = self.m_flow_kg_s(state);
+        let flow = direction * self.m_flow_kg_s(state);
         let was_blocked = memory.blocked;
         if memory.blocked {
             memory.blocked_s += dt_s;

@@ -193,7 +193,7 @@ impl Model {
     /// Names of the stations: where prosumers meet the network (list of str).
     #[getter]
     fn stations(&self) -> Vec<&str> {
-        self.model.interfaces.iter().map(|station| station.id.as_str()).collect()
+        self.model.interfaces.iter().map(|station| station.entry.id.as_str()).collect()
     }
 
     /// Names of the thermal units (list of str).

@@ -1,5 +1,6 @@
 //! From names to ids: a model becomes a plan, or all its problems are reported.
 
+mod circuits;
 mod commands;
 mod control;
 mod losses;
@@ -98,7 +99,7 @@ impl Builder<'_> {
             .map(|edge| ("edge", edge.id.as_str(), &edge.place))
             .chain(model.units.iter().map(|unit| ("unit", unit.id.as_str(), &unit.place)))
             .chain(model.circuits.iter().map(|c| ("circuit", c.id.as_str(), &c.place)))
-            .chain(model.interfaces.iter().map(|i| ("interface", i.id.as_str(), &i.place)))
+            .chain(model.interfaces.iter().map(|i| ("interface", i.entry.id.as_str(), &i.place)))
             .chain(model.sensors.iter().map(|s| ("sensor", s.entry.id.as_str(), &s.place)))
             .chain(model.controllers.iter().map(|c| ("controller", c.id.as_str(), &c.place)))
             .chain(
@@ -176,6 +177,7 @@ impl Builder<'_> {
             commands[prescription.free.index()] = None;
         }
         let set_points = self.set_points(&mut signals);
+        let drives = self.drives(&houses, &stations, &mut signals, &mut writers);
         // Without all edges there are not all signals: what is missing has been reported.
         let drivers = if whole { self.drivers(&signals, &mut writers) } else { Vec::new() };
         let steps = self.run_times();
@@ -197,9 +199,10 @@ impl Builder<'_> {
         let mut plan = Plan {
             node_names: model.nodes.iter().map(|node| node.entry.id.clone()).collect(),
             edge_names: model.edges.iter().map(|edge| edge.id.clone()).collect(),
-            station_names: model.interfaces.iter().map(|spec| spec.id.clone()).collect(),
+            station_names: model.interfaces.iter().map(|spec| spec.entry.id.clone()).collect(),
             station_of_valve: stations::interlocks(model.edges.len(), &stations),
             stations,
+            drives,
             units,
             grid_ports: houses.grid_ports,
             circuits: houses.circuits,

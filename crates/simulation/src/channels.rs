@@ -160,7 +160,7 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(group, name, "m_flow_kg_s", "kg s-1", Source::StationFlow(i));
         list.add(group, name, "q_flow_w", "W", Source::StationHeat(i));
         list.add(group, name, "heat_j", "J", Source::StationEnergy(i));
-        if station.requested_m_flow_kg_s.is_some() {
+        if station.requested_m_flow_kg_s.is_some() || plan.drives.iter().any(|d| d.station == i) {
             let request = Source::StationRequest(i);
             list.add(group, name, "requested_m_flow_kg_s", "kg s-1", request);
             list.add(group, name, "blocked", "1", Source::StationBlocked(i));
@@ -336,7 +336,9 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
         Source::StationFlow(i) => plan.stations[i].m_flow_kg_s(network),
         Source::StationHeat(i) => heat(plan.stations[i].edge.index()),
         Source::StationEnergy(i) => state.station_heat_j[i],
-        Source::StationRequest(i) => plan.stations[i].requested_m_flow_kg_s.unwrap_or(0.0),
+        Source::StationRequest(i) => plan.stations[i]
+            .requested_m_flow_kg_s
+            .unwrap_or_else(|| state.stations[i].demand.m_flow_kg_s()),
         Source::StationBlocked(i) => f64::from(u8::from(state.stations[i].blocked)),
         Source::WorstPoint(i) => {
             let pairs = plan.worst_points[i].between.iter();

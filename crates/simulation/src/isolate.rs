@@ -136,9 +136,9 @@ impl Model {
         });
         model.effects.retain(|effect| kept_edge(&effect.component));
         model.interfaces.retain(|interface| {
-            kept_edge(&interface.edge)
-                && interface.pump.as_deref().is_none_or(kept_edge)
-                && interface.valve.as_deref().is_none_or(kept_edge)
+            kept_edge(&interface.entry.edge)
+                && interface.entry.pump.as_deref().is_none_or(kept_edge)
+                && interface.entry.valve.as_deref().is_none_or(kept_edge)
         });
         let kept: HashSet<String> = model
             .edges
@@ -147,7 +147,7 @@ impl Model {
             .chain(model.nodes.iter().map(|node| node.entry.id.to_string()))
             .chain(model.units.iter().map(|unit| unit.id.to_string()))
             .chain(model.circuits.iter().map(|circuit| circuit.id.to_string()))
-            .chain(model.interfaces.iter().map(|interface| interface.id.clone()))
+            .chain(model.interfaces.iter().map(|interface| interface.entry.id.clone()))
             .chain(std::iter::once("ground".to_owned()))
             .collect();
         for point in &mut model.worst_points {

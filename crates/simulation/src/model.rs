@@ -83,26 +83,10 @@ pub struct CircuitSpec {
 /// A hydraulic interface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterfaceSpec {
-    /// Name.
-    pub id: String,
-    /// Edge whose flow from a to b is feed-in.
-    pub edge: String,
-    /// Pump that feeds in.
-    pub pump: Option<String>,
-    /// Valve that extracts.
-    pub valve: Option<String>,
-    /// Flow that the pump means to deliver, m3/s.
-    pub requested_flow_m3_s: Option<f64>,
+    /// As written.
+    pub entry: InterfaceEntry,
     /// Where it stands.
     pub place: Place,
-}
-
-impl InterfaceSpec {
-    /// As written.
-    pub(crate) fn new(entry: InterfaceEntry, place: Place) -> Self {
-        let InterfaceEntry { id, edge, pump, valve, requested_flow_m3_s } = entry;
-        Self { id, edge, pump, valve, requested_flow_m3_s, place }
-    }
 }
 
 /// A controller.

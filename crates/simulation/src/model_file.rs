@@ -3,23 +3,30 @@
 //! Each struct is one section of the file; together with the registries of elements, units and
 //! controllers they make up the grammar that `anergy schema` prints.
 
+mod balancing_unit;
 mod duration;
 pub mod expand;
 mod fluid;
 mod ground;
+mod houses;
 mod nodes;
 mod plant;
+mod prosumer_station;
 pub mod read;
 pub mod schema;
 pub mod series;
+mod station_parts;
 mod tables;
 mod three_way_valve;
 
+pub use balancing_unit::BalancingUnitEntry;
 pub use duration::{Duration, StepEntry};
 pub use fluid::{FluidEntry, FluidKind};
 pub use ground::{GroundEntry, GroundKind};
+pub use houses::{CircuitEntry, InterfaceEntry};
 pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
+pub use prosumer_station::{Directions, Extraction, FlowControl, ProsumerEntry};
 pub use tables::NetworkEntry;
 pub use three_way_valve::{ThreeWayMode, ThreeWayValveEntry};
 
@@ -94,6 +101,14 @@ pub struct RunEntry {
 }
 
 impl RunEntry {
+    /// The longest step it asks for, s.
+    pub fn longest_step_s(&self) -> f64 {
+        match self.step {
+            StepEntry::Fixed(step) => step.0.as_s(),
+            StepEntry::Automatic => self.step_max.0.as_s(),
+        }
+    }
+
     /// What is wrong with the automatic step: field and message.
     pub fn step_problems(&self) -> Vec<(&'static str, String)> {
         let mut problems = Vec::new();
@@ -248,41 +263,10 @@ pub enum StationKind {
     PrescribedFlow,
     /// Circulate the water and give it the supply temperature.
     Plant,
-}
-
-/// `[[interface]]`: what a station is in a model written as plain nodes and edges.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InterfaceEntry {
-    /// Name, for example "sf1.station".
-    pub id: String,
-    /// Edge whose flow from a to b is the station's feed-in.
-    pub edge: String,
-    /// Pump that feeds in.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pump: Option<String>,
-    /// Valve that extracts; stays closed until the pump has run down.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub valve: Option<String>,
-    /// Flow that the pump means to deliver, m3/s; decides the `blocked` flag.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub requested_flow_m3_s: Option<f64>,
-}
-
-/// `[[circuit]]`: a closed circuit of water in a house, through ports of its units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CircuitEntry {
-    /// Site that it belongs to, in front of its name and of those of its units.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub site: Option<String>,
-    /// Name, within its site where one is given.
-    pub id: String,
-    /// Ports in the order of the flow: `UNIT.PORT`, or `UNIT` where it has one port.
-    pub through: Vec<String>,
-    /// Flow of its own pump while nothing drives it, m3/s. Absent: one of its units sets the flow.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub v_flow_m3_s: Option<f64>,
+    /// Deliver the flow that a unit in the grid water asks for, with a pump for each direction.
+    Prosumer,
+    /// A unit in the grid water between the lines, which takes what comes.
+    BalancingUnit,
 }
 
 /// `[[prescribed]]`: a quantity that is given, and the actuator that is left free in its place.

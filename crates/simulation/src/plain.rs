@@ -52,18 +52,7 @@ impl Model {
         );
         section(
             "interface",
-            self.interfaces
-                .iter()
-                .map(|interface| {
-                    json!({
-                        "id": interface.id,
-                        "edge": interface.edge,
-                        "pump": interface.pump,
-                        "valve": interface.valve,
-                        "requested_flow_m3_s": interface.requested_flow_m3_s,
-                    })
-                })
-                .collect(),
+            self.interfaces.iter().map(|interface| without_nulls(json!(interface.entry))).collect(),
         );
         section(
             "unit",

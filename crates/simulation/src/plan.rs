@@ -19,7 +19,7 @@ use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 pub(crate) use control::{PlannedController, PlannedSensor, SwingWatch};
-pub(crate) use houses::{GridPort, PlannedCircuit, PlannedUnit};
+pub(crate) use houses::{GridPort, PlannedCircuit, PlannedDrive, PlannedUnit};
 use smol_str::SmolStr;
 use std::sync::{Arc, OnceLock};
 
@@ -187,6 +187,8 @@ pub struct Plan {
     pub(crate) edge_names: Vec<SmolStr>,
     pub(crate) station_names: Vec<String>,
     pub(crate) stations: Vec<Station>,
+    /// Stations that are told what their unit wants.
+    pub(crate) drives: Vec<PlannedDrive>,
     /// Station of each edge that is an extraction valve beside a feed-in pump.
     pub(crate) station_of_valve: Vec<Option<usize>>,
     pub(crate) units: Vec<PlannedUnit>,

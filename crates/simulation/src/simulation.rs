@@ -105,6 +105,7 @@ impl Simulation {
         self.follow_seasons(Time::ZERO);
         self.follow_signals();
         self.request_units();
+        self.drive_stations();
         self.apply_inputs();
         self.state.network.rest_soil(&self.plan.network.soil);
         self.fill_vessels();
@@ -143,6 +144,7 @@ impl Simulation {
         self.state.network.advance_soil(&self.plan.network.soil, dt_s);
         self.advance_units(dt_s)?;
         self.watch_stations(end, dt_s);
+        self.remember_directions(dt_s);
         self.watch_targets(end, dt_s);
         self.watch_swings(end, dt_s);
         self.book(dt_s);
@@ -167,6 +169,7 @@ impl Simulation {
             self.drive_inputs(end);
         }
         self.request_units();
+        self.drive_stations();
         self.apply_inputs();
         self.move_actuators((end - now).as_s());
         self.solve_hydraulics()?;
@@ -298,6 +301,7 @@ impl Simulation {
     /// solve. Returns the hydraulic report.
     pub(crate) fn settle_once(&mut self) -> Result<HydraulicReport, RunError> {
         self.request_units();
+        self.drive_stations();
         self.apply_inputs();
         self.move_actuators(f64::INFINITY);
         let report = self.solve_hydraulics()?;

@@ -86,6 +86,7 @@ impl CascadeParams {
             });
         }
         let pi = |set_point, gain, integral_time_s, initial_output| PiParams {
+            off_at_zero: false,
             set_point,
             gain,
             integral_time_s,

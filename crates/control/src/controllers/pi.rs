@@ -39,6 +39,9 @@ pub struct PiParams {
     /// Factors of the gain at those outputs; straight in between.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub schedule_factor: Vec<f64>,
+    /// Whether a set point of zero switches off: the smallest output, from which it begins anew.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub off_at_zero: bool,
     /// Output at the start of a run.
     #[serde(default)]
     pub initial_output: f64,
@@ -53,6 +56,11 @@ pub struct PiParams {
 #[allow(clippy::trivially_copy_pass_by_ref)]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 /// A PI controller ready to run. State: the integral part.
@@ -136,6 +144,11 @@ impl Controller for Pi {
     ) -> Result<(), ControlError> {
         let inputs = inputs.checked()?;
         let (min, max) = self.output_limits(0, inputs.limits[0]);
+        if self.is_off(inputs.set_points) {
+            state[0] = self.params.initial_output;
+            outputs[0] = min;
+            return Ok(());
+        }
         let push = self.gain_at(state[0]) * self.error(inputs);
         let share = dt_s / self.params.integral_time_s;
         let integral = &mut state[0];
@@ -145,6 +158,15 @@ impl Controller for Pi {
         *integral += (limited - unlimited) * share.min(1.0);
         outputs[0] = limited;
         Ok(())
+    }
+
+    fn is_off(&self, set_points: &[f64]) -> bool {
+        self.params.off_at_zero && set_points[0] == 0.0
+    }
+
+    fn limits_now(&self, output: usize, inputs: &Inputs) -> (f64, f64) {
+        let (min, max) = self.output_limits(output, inputs.limits[output]);
+        if self.is_off(inputs.set_points) { (min, min) } else { (min, max) }
     }
 
     fn balance(&self, inputs: &Inputs, _outputs: &[f64], balance: &mut [Balance]) {
@@ -178,6 +200,7 @@ mod tests {
             interval_s: 0.0,
             offset_s: 0.0,
             dead_band: 0.0,
+            off_at_zero: false,
             schedule_output: Vec::new(),
             schedule_factor: Vec::new(),
             initial_output: 0.0,
@@ -216,6 +239,18 @@ mod tests {
         }
         assert!(output < 0.5, "{output} {state:?}");
         assert!(update(&pi, 1.0, f64::NAN, &mut state).is_err());
+    }
+
+    #[test]
+    fn a_set_point_of_zero_switches_off() {
+        let pi = PiParams { off_at_zero: true, ..params() }.build(&()).unwrap();
+        let mut state = vec![0.7];
+        let mut outputs = [f64::NAN];
+        let off = Inputs { measured: &[0.3], set_points: &[0.0], limits: &[(0.1, 1.0)] };
+        pi.update(1.0, &off, &mut state, &mut outputs).unwrap();
+        assert_eq!((outputs[0], state[0], pi.limits_now(0, &off)), (0.1, 0.0, (0.1, 0.1)));
+        // From there as from the start: e = 1, u = 0.1 (1 + 1/8)
+        assert!((update(&pi, 1.0, 1.0, &mut state).unwrap() - 0.1125).abs() < 1e-12);
     }
 
     #[test]

@@ -38,12 +38,11 @@ impl Builder<'_> {
         edge_ids: &HashMap<&str, usize>,
     ) -> Option<Quantity> {
         let (component, word) = spec.entry.quantity.rsplit_once('.').unwrap_or(("", ""));
-        let station = self.model.interfaces.iter().find(|station| station.id == component);
+        let station = self.model.interfaces.iter().find(|station| station.entry.id == component);
         let edge = |name: &str| edge_ids.get(name).map(|&i| EdgeId::from_index(i));
         let found = match word {
-            "m_flow_kg_s" => {
-                edge(station.map_or(component, |station| &station.edge)).map(Quantity::MassFlow)
-            }
+            "m_flow_kg_s" => edge(station.map_or(component, |station| &station.entry.edge))
+                .map(Quantity::MassFlow),
             "dp_pa" => edge(component).map(Quantity::PressureDifference),
             "p_pa" => node_ids.get(component).map(|&i| Quantity::Pressure(NodeId::from_index(i))),
             _ => None,

@@ -3,7 +3,8 @@
 use super::Builder;
 use super::signals::{Writer, temperature_signal};
 use crate::diagnostic::did_you_mean;
-use crate::model::{CircuitSpec, UnitSpec};
+use crate::model::UnitSpec;
+use crate::model_file::InterfaceEntry;
 use crate::plan::{GridPort, PlannedCircuit, PlannedUnit};
 use crate::temperatures::SURROUNDINGS;
 use crate::wording::refused;
@@ -11,7 +12,6 @@ use anergy_core::ids::{EdgeId, SignalId};
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::Network;
-use anergy_prosumer::circuit::{Circuit, MOST_MEMBERS};
 use anergy_prosumer::equipment::Equipment;
 use anergy_prosumer::thermal_unit::UnitPort;
 use smol_str::{SmolStr, format_smolstr};
@@ -22,42 +22,19 @@ use std::ops::Range;
 pub(super) struct Houses {
     /// In the order of the model; `None` after a report.
     pub equipment: Vec<Option<Equipment>>,
-    ports: Vec<Vec<UnitPort>>,
-    slots: Vec<Range<usize>>,
+    pub ports: Vec<Vec<UnitPort>>,
+    pub slots: Vec<Range<usize>>,
     pub circuits: Vec<PlannedCircuit>,
     pub grid_ports: Vec<GridPort>,
     /// Edge of each grid port.
     pub edges: Vec<EdgeId>,
-    by_name: HashMap<SmolStr, usize>,
+    pub by_name: HashMap<SmolStr, usize>,
 }
 
 impl Houses {
     /// Number of slots.
-    pub fn slots(&self) -> usize {
+    fn slots(&self) -> usize {
         self.slots.last().map_or(0, |slots| slots.end)
-    }
-
-    /// Unit and port of a member of a circuit.
-    fn member(&self, name: &str) -> Option<(usize, usize)> {
-        let alone = self.by_name.get(name).copied();
-        if let Some(unit) = alone.filter(|unit| self.ports[*unit].len() == 1) {
-            return Some((unit, 0));
-        }
-        let (unit, port) = name.rsplit_once('.')?;
-        let unit = *self.by_name.get(unit)?;
-        let port = self.ports[unit].iter().position(|own| own.name == port)?;
-        Some((unit, port))
-    }
-
-    /// What members of circuits can be called.
-    fn names(&self, units: &[UnitSpec]) -> Vec<String> {
-        let names = units.iter().zip(&self.ports).flat_map(|(unit, ports)| {
-            ports.iter().map(move |port| match ports.len() {
-                1 => unit.id.to_string(),
-                _ => format!("{}.{}", unit.id, port.name),
-            })
-        });
-        names.collect()
     }
 }
 
@@ -109,102 +86,6 @@ impl Builder<'_> {
                 None
             }
         }
-    }
-
-    /// A circuit with its members; `None` after a report.
-    fn circuit<'m>(
-        &mut self,
-        spec: &'m CircuitSpec,
-        houses: &Houses,
-        circuit_of: &mut [Option<&'m str>],
-    ) -> Option<PlannedCircuit> {
-        let what = format!("circuit \"{}\"", spec.id);
-        let through = spec.place.of("through");
-        let mut members = Vec::new();
-        for name in &spec.through {
-            let Some((unit, port)) = houses.member(name) else {
-                let of_wrong = |(unit, spec): (usize, &UnitSpec)| {
-                    houses.equipment[unit].is_none() && name.starts_with(spec.id.as_str())
-                };
-                if !self.model.units.iter().enumerate().any(of_wrong) {
-                    let names = houses.names(&self.model.units);
-                    let hint = did_you_mean(name, names.iter().map(String::as_str))
-                        .or_else(|| self.ports_hint(name, houses));
-                    let message = format!("{what}: there is no port \"{name}\"");
-                    self.report(message, through.clone(), hint);
-                }
-                return None;
-            };
-            let slot = houses.slots[unit].start + port;
-            if let Some(before) = circuit_of[slot].replace(&spec.id) {
-                let message = match before == spec.id {
-                    true => format!("{what}: passes \"{name}\" twice"),
-                    false => format!("{what}: \"{name}\" is in circuit \"{before}\" already"),
-                };
-                let hint = "each port is in one circuit: a storage takes several `ports`";
-                self.report(message, through.clone(), Some(hint.into()));
-                return None;
-            }
-            members.push((unit, port, slot));
-        }
-        if !(2..=MOST_MEMBERS).contains(&members.len()) {
-            let message = format!("{what}: passes {} ports", members.len());
-            let hint = format!("a circuit passes 2 to {MOST_MEMBERS}, and returns to the first");
-            self.report(message, through, Some(hint));
-            return None;
-        }
-        let port = |&(unit, port, _): &(usize, usize, usize)| &houses.ports[unit][port];
-        let mut drivers = members.iter().filter(|member| port(member).sets_flow);
-        let driver = drivers.next();
-        let names: Vec<&str> = spec.through.iter().map(SmolStr::as_str).collect();
-        let drivers = usize::from(driver.is_some()) + drivers.count();
-        match (drivers, spec.v_flow_m3_s) {
-            (1, None) | (0, Some(0.0..)) => {}
-            (0, None) => {
-                let message = format!("{what}: nothing sets its flow");
-                let hint = format!("none of {} has a pump: give v_flow_l_min", names.join(", "));
-                self.report(message, through, Some(hint));
-                return None;
-            }
-            (0, Some(v_flow)) => {
-                let message = format!("{what}: v_flow_m3_s = {v_flow} must not be negative");
-                self.report(message, spec.place.of("v_flow_m3_s"), None);
-                return None;
-            }
-            _ => {
-                let message = format!("{what}: its flow is set more than once");
-                let setting =
-                    members.iter().zip(&names).filter(|(member, _)| port(member).sets_flow);
-                let mut setting: Vec<&str> = setting.map(|(_, name)| *name).collect();
-                setting.extend(spec.v_flow_m3_s.map(|_| "v_flow_m3_s"));
-                let hint = format!("by {}: one is enough", setting.join(" and "));
-                self.report(message, through, Some(hint));
-                return None;
-            }
-        }
-        Some(PlannedCircuit {
-            name: spec.id.clone(),
-            circuit: Circuit {
-                members: members.iter().map(|(_, _, slot)| *slot).collect(),
-                driver: driver.map(|(_, _, slot)| *slot),
-            },
-            v_flow: None,
-            leads: members
-                .iter()
-                .filter(|member| port(member).leads)
-                .map(|(unit, port, _)| (*unit, *port))
-                .collect(),
-        })
-    }
-
-    /// The ports of the unit that a name begins with.
-    fn ports_hint(&self, name: &str, houses: &Houses) -> Option<String> {
-        let unit = self.model.units.iter().position(|unit| {
-            name.strip_prefix(unit.id.as_str())
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        })?;
-        let ports: Vec<&str> = houses.ports[unit].iter().map(|port| port.name.as_str()).collect();
-        Some(format!("the ports of \"{}\" are {}", self.model.units[unit].id, ports.join(", ")))
     }
 
     /// Ports that are in no circuit stand on an edge.
@@ -277,6 +158,16 @@ impl Builder<'_> {
         let carrier = &model.edges[edge];
         let (fits, hint) = match (&carrier.params, sets_flow) {
             (ElementParams::HeatExchanger(_) | ElementParams::FlowSource(_), true) => (true, ""),
+            (ElementParams::Resistance(_), true) => {
+                let driven =
+                    |i: &InterfaceEntry| i.feed_in_set.is_some() || i.extraction_set.is_some();
+                let driven =
+                    model.interfaces.iter().any(|i| i.entry.edge == carrier.id && driven(&i.entry));
+                (
+                    driven,
+                    "its flow is set by the unit: give the site a [[station]] of kind \"prosumer\"",
+                )
+            }
             (_, true) => (false, "a unit stands behind a heat_exchanger or on a flow_source"),
             (params, false) => (
                 matches!(params, ElementParams::Resistance(_)),

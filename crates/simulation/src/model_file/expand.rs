@@ -95,6 +95,9 @@ pub(super) const PARTS: &[(&str, &str)] = &[
     ("feed_in_check_valve", "{ kvs_m3_h = 11 }"),
     ("extraction_valve", "{ opening = 0.5 }"),
     ("extraction_check_valve", "{ kvs_m3_h = 11 }"),
+    ("extraction_pump", "{ head_max_bar = 0.4, free_flow_l_min = 55 }"),
+    ("interface", "{ kv_m3_h = 4 }"),
+    ("shut_off", "{ kvs_m3_h = 11 }"),
     ("circulation_pump", "{ head_max_bar = 5, free_flow_m3_h = 60 }"),
     ("generator", "{ dp_nominal_bar = 0.2, m_flow_nominal_kg_s = 10 }"),
 ];
@@ -107,8 +110,9 @@ pub(super) fn part_kind(part: &str) -> Option<&'static str> {
         "feed_in_pump" => Some("pump"),
         "feed_in_check_valve" | "extraction_check_valve" => Some("check_valve"),
         "extraction_valve" => Some("valve"),
-        "circulation_pump" => Some("pump"),
-        "generator" => Some("resistance"),
+        "circulation_pump" | "extraction_pump" => Some("pump"),
+        "shut_off" => Some("ball_valve"),
+        "generator" | "interface" => Some("resistance"),
         _ => None,
     }
 }
@@ -128,6 +132,17 @@ pub(super) fn parts_of(kind: StationKind) -> &'static [&'static str] {
         StationKind::Producer => &["stub", "heat_exchanger", "feed_in_pump", "feed_in_check_valve"],
         StationKind::PrescribedFlow => &[],
         StationKind::Plant => &["circulation_pump", "generator"],
+        StationKind::Prosumer => &[
+            "stub",
+            "interface",
+            "feed_in_pump",
+            "feed_in_check_valve",
+            "extraction_pump",
+            "extraction_check_valve",
+            "extraction_valve",
+            "shut_off",
+        ],
+        StationKind::BalancingUnit => &["stub", "interface"],
     }
 }
 
@@ -277,11 +292,11 @@ pub(super) fn station(
         })
         .collect();
     let interface = InterfaceEntry {
-        id,
         edge: inner(if parts.len() == 1 { "flow_source" } else { "heat_exchanger" }),
         pump: feeds_in.then(|| inner("feed_in_pump")),
         valve: extracts.then(|| inner("extraction_valve")),
         requested_flow_m3_s: station.requested_flow_m3_s,
+        ..InterfaceEntry::watching(id)
     };
     (nodes, edges, interface)
 }

@@ -177,11 +177,9 @@ pub(super) fn plant(plant: &PlantEntry, site: &SiteEntry, tree: &Tree, what: &st
         }],
         edges,
         interface: InterfaceEntry {
-            id,
             edge: inner("generator"),
             pump: Some(inner("circulation_pump")),
-            valve: None,
-            requested_flow_m3_s: None,
+            ..InterfaceEntry::watching(id)
         },
         unit,
         reference,

@@ -98,6 +98,7 @@ pub fn model(mut tree: Tree, text: &str, dir: &Path) -> Result<Model, Diagnostic
         wrong_sites: HashSet::new(),
         sites_unread: false,
         medium: Medium::default(),
+        longest_step_s: 0.0,
         types: PipeTypes::new(),
         nodes: Vec::new(),
         edges: Vec::new(),
@@ -144,6 +145,8 @@ struct ModelReader<'a> {
     sites_unread: bool,
     /// The water, as far as it is right.
     medium: Medium,
+    /// The longest step of the run, s.
+    longest_step_s: f64,
     types: PipeTypes,
     nodes: Vec<NodeSpec>,
     edges: Vec<EdgeSpec>,
@@ -193,6 +196,7 @@ impl ModelReader<'_> {
             self.reader.report(problem.with_hint("9.81 pulls down: elevations count upwards"));
         }
         if let Some((run, place)) = &run {
+            self.longest_step_s = run.longest_step_s();
             let water = self.water();
             self.check_temperature(&water, "initial_k", run.initial_k, place);
             for (field, message) in run.step_problems() {
@@ -236,7 +240,7 @@ impl ModelReader<'_> {
                     self.reader.report(Diagnostic::new("interface: id is empty", span));
                 }
                 stations.edges.insert(entry.id.clone(), entry.edge.clone());
-                interfaces.push(InterfaceSpec::new(entry, place(&what, &tree, &table)));
+                interfaces.push(InterfaceSpec { entry: entry, place: place(&what, &tree, &table) });
             }
         }
         let circuits = self.circuits();

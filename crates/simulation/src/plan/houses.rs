@@ -2,6 +2,7 @@
 
 use super::Plan;
 use anergy_core::ids::SignalId;
+use anergy_network::interface::Drive;
 use anergy_prosumer::circuit::Circuit;
 use anergy_prosumer::equipment::Equipment;
 use anergy_prosumer::thermal_unit::UnitPort;
@@ -29,6 +30,24 @@ pub(crate) struct GridPort {
     pub slot: usize,
     /// The command of its edge, where its request is that edge's flow (and not its own circulation).
     pub imposes_flow: Option<SignalId>,
+}
+
+/// A station that is told what its unit wants.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlannedDrive {
+    pub station: usize,
+    /// Port of the network with the unit.
+    pub port: usize,
+    /// Signal that gets the flow of feed-in, kg/s.
+    pub feed_in: Option<SignalId>,
+    /// Signal that gets the flow of extraction, kg/s.
+    pub extraction: Option<SignalId>,
+    /// Signals that are 1 while feed-in and extraction are asked for.
+    pub feed_in_open: Option<SignalId>,
+    pub extraction_open: Option<SignalId>,
+    /// Share of what the unit wants that is asked for.
+    pub participation: SignalId,
+    pub drive: Drive,
 }
 
 /// A circuit of a house.

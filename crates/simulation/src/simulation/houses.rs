@@ -26,6 +26,37 @@ impl Simulation {
         }
     }
 
+    /// Stations tell their pumps what the units want; a direction that is not there is not served.
+    pub(super) fn drive_stations(&mut self) {
+        for planned in &self.plan.drives {
+            let state = &mut self.state;
+            let wanted = state.network.requests[planned.port].m_flow_kg_s;
+            let wanted = wanted * state.signals[planned.participation.index()];
+            let memory = &mut state.stations[planned.station];
+            memory.demand = planned.drive.demand(wanted, memory);
+            let sets = [
+                (planned.feed_in, memory.demand.feed_in_kg_s),
+                (planned.extraction, memory.demand.extraction_kg_s),
+                (planned.feed_in_open, f64::from(memory.demand.feed_in_kg_s > 0.0)),
+                (planned.extraction_open, f64::from(memory.demand.extraction_kg_s > 0.0)),
+            ];
+            for (signal, value) in sets {
+                if let Some(signal) = signal.filter(|signal| !state.taken_over[signal.index()]) {
+                    state.signals[signal.index()] = value;
+                }
+            }
+        }
+    }
+
+    /// Stations remember in which direction they delivered.
+    pub(super) fn remember_directions(&mut self, dt_s: f64) {
+        for planned in &self.plan.drives {
+            let wanted = self.state.network.requests[planned.port].m_flow_kg_s;
+            let wanted = wanted * self.state.signals[planned.participation.index()];
+            planned.drive.remember(wanted, dt_s, &mut self.state.stations[planned.station]);
+        }
+    }
+
     /// Units hear what the network gave, circuits go round, and units advance.
     pub(super) fn advance_units(&mut self, dt_s: f64) -> Result<(), RunError> {
         for (port, place) in self.plan.grid_ports.iter().enumerate() {

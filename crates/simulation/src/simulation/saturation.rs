@@ -72,6 +72,9 @@ fn missed(plan: &Plan, state: &State, target: Target) -> bool {
         Target::Controller(i) => {
             let controller = &plan.controllers[i];
             let wanted = state.signals[controller.set_points.start];
+            if controller.controller.is_off(&state.signals[controller.set_points.clone()]) {
+                return false;
+            }
             let error = wanted - channels::value(plan, state, controller.measures[0]);
             let (min, max) = controller.controller.output_limits(0, controller.limits[0]);
             let output = state.signals[controller.acts_on[0].index()];

@@ -25,20 +25,21 @@ impl Simulation {
     /// Stations raise and clear their flag.
     pub(super) fn watch_stations(&mut self, end: Time, dt_s: f64) {
         for (i, station) in self.plan.stations.iter().enumerate() {
-            let command = station
-                .pump
-                .and_then(|pump| self.plan.commands[pump.index()])
-                .map_or(0.0, |id| self.state.signals[id.index()]);
             let (network, state) = (&self.plan.network, &self.state.network);
             let memory = &mut self.state.stations[i];
+            let delivery = station.delivery(memory);
+            let pump = delivery.map(|(pump, ..)| pump);
+            let command = pump
+                .and_then(|pump| self.plan.commands[pump.index()])
+                .map_or(0.0, |id| self.state.signals[id.index()]);
             let Some(blocked) = station.watch(network, state, command, dt_s, memory) else {
                 continue;
             };
-            let by = station.pump.filter(|_| blocked);
+            let by = pump.filter(|_| blocked);
             let by = by.and_then(|pump| culprit(network, state, pump));
             let delivery = Delivery {
-                flow_kg_s: station.m_flow_kg_s(state),
-                wanted_kg_s: station.requested_m_flow_kg_s.unwrap_or(0.0),
+                flow_kg_s: delivery.map_or(1.0, |d| d.2) * station.m_flow_kg_s(state),
+                wanted_kg_s: delivery.map_or(0.0, |d| d.1),
                 held_back_by: by,
             };
             self.events.push(blocked_event(&self.plan, i, end, blocked, delivery));

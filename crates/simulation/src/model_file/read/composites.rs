@@ -6,7 +6,10 @@ use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Tree, TreeKind};
 use crate::model::InterfaceSpec;
 use crate::model_file::expand;
-use crate::model_file::{InterfaceEntry, SiteEntry, StationEntry, StationKind};
+use crate::model_file::{
+    BalancingUnitEntry, InterfaceEntry, ProsumerEntry, SiteEntry, StationEntry, StationKind,
+};
+use crate::wording::refused;
 use std::collections::HashSet;
 
 impl Stations {
@@ -181,6 +184,9 @@ impl ModelReader<'_> {
         if tree.text("kind") == Some("plant") {
             return self.plant(tree, &what, stations, interfaces);
         }
+        if let Some("prosumer" | "balancing_unit") = tree.text("kind") {
+            return self.in_grid_water(tree, &what, stations, interfaces);
+        }
         let (entry, table) = self.reader.read::<StationEntry>(&what, tree)?;
         let site = self.site_with_two_lines(&what, tree)?;
         self.check_parts(&what, entry.kind, tree)?;
@@ -197,7 +203,43 @@ impl ModelReader<'_> {
         stations.lines.insert(interface.id.clone(), lines);
         self.add_nodes(nodes);
         self.add_edges(edges);
-        interfaces.push(InterfaceSpec::new(interface, place));
+        interfaces.push(InterfaceSpec { entry: interface, place });
+        Some(())
+    }
+
+    /// Expands a station in which the water of the grid passes the unit; `None` after a report.
+    fn in_grid_water(
+        &mut self,
+        tree: &Tree,
+        what: &str,
+        stations: &mut Stations,
+        interfaces: &mut Vec<InterfaceSpec>,
+    ) -> Option<()> {
+        let (expanded, kind, place) = if tree.text("kind") == Some("prosumer") {
+            let (entry, table) = self.reader.read::<ProsumerEntry>(what, tree)?;
+            let site = self.site_with_two_lines(what, tree)?;
+            let place = place(what, tree, &table);
+            let problems = entry.problems();
+            for (field, message, hint) in &problems {
+                let problem = refused(what, &place, Some(field), message);
+                self.reader.report(problem.with_hint(*hint));
+            }
+            if !problems.is_empty() {
+                return None;
+            }
+            (entry.expand(&site, tree, what, self.longest_step_s), StationKind::Prosumer, place)
+        } else {
+            let (entry, table) = self.reader.read::<BalancingUnitEntry>(what, tree)?;
+            let site = self.site_with_two_lines(what, tree)?;
+            let expanded = entry.expand(&site, tree, what);
+            (expanded, StationKind::BalancingUnit, place(what, tree, &table))
+        };
+        self.check_parts(what, kind, tree)?;
+        stations.add(self, &expanded.interface, what, tree)?;
+        self.add_nodes(expanded.nodes);
+        self.add_edges(expanded.edges);
+        self.rows.entry("controller").or_default().extend(expanded.controllers);
+        interfaces.push(InterfaceSpec { entry: expanded.interface, place });
         Some(())
     }
 

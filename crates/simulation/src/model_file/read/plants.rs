@@ -26,7 +26,7 @@ impl ModelReader<'_> {
         stations.add(self, &plant.interface, what, tree)?;
         self.add_nodes(plant.nodes);
         self.add_edges(plant.edges);
-        interfaces.push(InterfaceSpec::new(plant.interface, place.clone()));
+        interfaces.push(InterfaceSpec { entry: plant.interface, place: place.clone() });
         self.rows.entry("unit").or_default().push(plant.unit);
         self.rows.entry("pressure_reference").or_default().extend(plant.reference);
         if let (DpAt::WorstConsumer, Some(dp_pa)) = (entry.dp_at, entry.dp_pa) {
