@@ -132,6 +132,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "emitter_exponent",
     "curve_polynomial",
     "flow_exponent",
+    "difference_exponent",
     "coefficient",
     "hazen_williams_c",
     "manning_n",

@@ -6,6 +6,7 @@ pub mod heat_load;
 pub mod heat_source;
 pub mod ideal_house;
 pub mod prescribed_source;
+pub mod storage;
 
 use crate::thermal_unit::{ThermalUnit, UnitError};
 use anergy_core::medium::Medium;
@@ -19,6 +20,7 @@ anergy_core::registry! {
         IdealHouse("ideal_house", ideal_house::IdealHouse, ideal_house::IdealHouseParams),
         CoolingLoad("cooling_load", cooling_load::CoolingLoad, cooling_load::CoolingLoadParams),
         Building("building", building::Building, building::BuildingParams),
+        Storage("storage", storage::Storage, storage::StorageParams),
     }
 }
 

@@ -24,6 +24,7 @@ mod layers;
 mod mixed_layers;
 mod plug_flow;
 mod ports;
+mod promise;
 mod rod;
 mod tank;
 mod unit;
@@ -77,7 +78,7 @@ pub struct StorageParams {
     /// Conductivity of water, wall and built-in parts over the cross-section of the water, W/(m K).
     #[serde(default = "default_conductivity")]
     pub conductivity_w_m_k: f64,
-    /// What becomes of warm water below cold water: `gradual` or `instant`.
+    /// What becomes of warm water below cold water: `gradual` or `at_once`.
     #[serde(default)]
     pub buoyancy: Buoyancy,
     /// Conductance with which heat rises from a layer to a colder one above it, W/K.

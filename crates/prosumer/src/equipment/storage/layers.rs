@@ -130,6 +130,7 @@ impl<const N: usize> Cells<N> {
     }
 
     /// Sum of `m T`, kg K.
+    #[cfg(test)]
     pub(super) fn content_kg_k(&self) -> f64 {
         (0..self.count).map(|i| self.mass_kg[i] * self.t_k[i]).sum()
     }

@@ -13,7 +13,7 @@
 //! temperatures that never were there.
 
 use super::coil::{Coil, Line};
-use super::exchange::{Surroundings, conduct_and_lose, overturn, rise};
+use super::exchange::{Surroundings, exchange, overturn};
 use super::layers::{Cells, Layers};
 use super::mixed_layers::advect;
 use super::plug_flow::{displace, merge};
@@ -49,7 +49,7 @@ pub enum Buoyancy {
     #[default]
     Gradual,
     /// It mixes at once.
-    Instant,
+    AtOnce,
 }
 
 /// What stays the same during a step.
@@ -200,14 +200,14 @@ impl Tank {
                     * section
                     * section
                     * self.layers.density_kg_m3,
+                buoyancy_w_kg_k: match self.buoyancy {
+                    Buoyancy::Gradual => self.buoyancy_w_k * self.layers.layer_kg(),
+                    Buoyancy::AtOnce => 0.0,
+                },
             };
-            passed.lost_j += conduct_and_lose(&mut water.cells, &around);
-            match self.buoyancy {
-                Buoyancy::Gradual => {
-                    let layer_kg = self.layers.layer_kg();
-                    rise(&mut water.cells, dt_s, self.cp(), self.buoyancy_w_k, layer_kg);
-                }
-                Buoyancy::Instant => overturn(&mut water.cells),
+            passed.lost_j += exchange(&mut water.cells, &around);
+            if self.buoyancy == Buoyancy::AtOnce {
+                overturn(&mut water.cells);
             }
         }
         for outlet in &mut passed.outlets {

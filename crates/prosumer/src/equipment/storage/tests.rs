@@ -143,7 +143,7 @@ fn heat_of_every_step_for_random_flows_and_steps() {
     let mut random = Random(7);
     let schemes = [Scheme::MixedLayers, Scheme::PlugFlow];
     for (layers, scheme) in [3, 10, 100, 200].into_iter().flat_map(|n| schemes.map(|s| (n, s))) {
-        for buoyancy in [Buoyancy::Gradual, Buoyancy::Instant] {
+        for buoyancy in [Buoyancy::Gradual, Buoyancy::AtOnce] {
             let mut run = Run::new(&full(layers, scheme, buoyancy));
             let (mut low, mut high) = (273.15_f64, 0.0_f64);
             for _ in 0..3000 / (layers + 20) {

@@ -2,11 +2,11 @@
 
 use super::StorageParams;
 use super::layers::Cells;
-use super::ports::{LayerFlows, MAX_PORTS};
-use super::tank::{Conditions, Passed, Tank, Water};
+use super::ports::MAX_PORTS;
+use super::tank::{Conditions, Tank, Water};
 use crate::thermal_unit::{Exchange, ThermalUnit, UnitInput, UnitOutput, UnitPort};
 use anergy_core::medium::ZERO_CELSIUS_K;
-use anergy_core::port::{Outlet, Port, PortFlow, PortRequest};
+use anergy_core::port::{PortFlow, PortRequest};
 use anergy_core::signal::Signals;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -22,18 +22,18 @@ pub(super) enum Initial {
 
 // Places of the state; behind them the content of each coil, K, the last flow of each coil, kg/s, and the
 // cells: temperatures of the layers, or count, masses and temperatures of parcels.
-const LAST_STEP_S: usize = 0;
+pub(super) const LAST_STEP_S: usize = 0;
 const ROD_BLOCKED: usize = 1;
 const LOST_J: usize = 2;
 const ROD_J: usize = 3;
 const CHARGED_J: usize = 4;
 const DISCHARGED_J: usize = 5;
-const COILS: usize = 6;
+pub(super) const COILS: usize = 6;
 
 /// A storage ready to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Storage {
-    tank: Tank,
+    pub(super) tank: Tank,
     /// Names of the ports, then of the coils.
     names: Vec<String>,
     /// Ports with two positions.
@@ -69,7 +69,11 @@ impl Storage {
         self.tank.most_cells() + if self.tank.layers_are_cells() { 0 } else { 2 * openings + 2 }
     }
 
-    fn water<'a, const N: usize>(&self, state: &[f64], coils_k: &'a mut [f64]) -> Water<'a, N> {
+    pub(super) fn water<'a, const N: usize>(
+        &self,
+        state: &[f64],
+        coils_k: &'a mut [f64],
+    ) -> Water<'a, N> {
         let stored = &state[self.first_cell()..];
         let mut cells = Cells::empty();
         if self.tank.layers_are_cells() {
@@ -102,7 +106,7 @@ impl Storage {
         }
     }
 
-    fn positions(&self, signals: &Signals<'_>) -> [f64; MAX_PORTS] {
+    pub(super) fn positions(&self, signals: &Signals<'_>) -> [f64; MAX_PORTS] {
         let mut positions = [0.0; MAX_PORTS];
         let first = if self.tank.rod.is_some() { 3 } else { 1 };
         for (i, port) in self.switched.iter().enumerate() {
@@ -111,7 +115,7 @@ impl Storage {
         positions
     }
 
-    fn conditions<'a>(
+    pub(super) fn conditions<'a>(
         signals: &Signals<'_>,
         dt_s: f64,
         streams: &'a [PortFlow],
@@ -120,76 +124,6 @@ impl Storage {
     ) -> Conditions<'a> {
         let rod = if has_rod { (signals.get(1), signals.get(2)) } else { (0.0, 0.0) };
         Conditions { dt_s, streams, positions, ambient_k: signals.get(0), rod }
-    }
-
-    /// The promises for the coming step.
-    fn promise<const N: usize>(
-        &self,
-        signals: &Signals<'_>,
-        got: &[PortFlow],
-        state: &[f64],
-        wanted: &mut [PortRequest],
-    ) {
-        let tank = &self.tank;
-        let coils = tank.coils.len();
-        let mut coils_k = [0.0; MAX_PORTS];
-        let water = self.water::<N>(state, &mut coils_k[..coils]);
-        let positions = self.positions(signals);
-        let dt_s = state[LAST_STEP_S];
-        let with = Self::conditions(signals, dt_s, got, &positions, tank.rod.is_some());
-        let expected = self.expected(&with, &water);
-        for port in 0..tank.ports {
-            let at = |end| {
-                let mixed = tank.layers_are_cells();
-                tank.openings.leaving_k(&water.cells, mixed, port, end, positions[port])
-            };
-            let (mut a_k, mut b_k) = (at(Port::A), at(Port::B));
-            if let Some(passed) = expected.as_ref().filter(|_| got[port].m_flow_kg_s != 0.0) {
-                let leaving = if got[port].m_flow_kg_s > 0.0 { &mut b_k } else { &mut a_k };
-                *leaving = passed.outlets[port].constant_k;
-            }
-            wanted[port] = PortRequest { m_flow_kg_s: 0.0, outlet: Outlet::Ends { a_k, b_k } };
-        }
-        for (i, coil) in tank.coils.iter().enumerate() {
-            let port = tank.ports + i;
-            let line = match expected.as_ref().filter(|_| got[port].m_flow_kg_s != 0.0) {
-                Some(passed) => passed.outlets[port],
-                None => {
-                    let stream = PortFlow { m_flow_kg_s: state[COILS + coils + i], ..got[port] };
-                    let arriving = tank.coil_line(i, &water, &stream);
-                    coil.flush(&mut { water.coils_k[i] }, arriving, &stream, dt_s)
-                }
-            };
-            let outlet = Outlet::Linear { constant_k: line.constant_k, of_inlet: line.of_inlet };
-            wanted[port] = PortRequest { m_flow_kg_s: 0.0, outlet };
-        }
-    }
-
-    /// The coming step if it is like the last; `None` where what leaves has the temperature it has now.
-    fn expected<const N: usize>(
-        &self,
-        with: &Conditions<'_>,
-        water: &Water<'_, N>,
-    ) -> Option<Passed> {
-        let tank = &self.tank;
-        let flows = |stream: &PortFlow| stream.m_flow_kg_s != 0.0;
-        let (ports, coils) = with.streams.split_at(tank.ports);
-        if with.dt_s <= 0.0 || !with.streams.iter().any(flows) {
-            return None;
-        }
-        if tank.layers_are_cells() && !coils.iter().any(flows) {
-            let layers =
-                LayerFlows::<N>::new(&tank.openings, ports, with.positions, tank.layers.count);
-            if tank.parts(with, &layers) == 1 {
-                return None;
-            }
-        }
-        let mut coils_k = [0.0; MAX_PORTS];
-        let coils_k = &mut coils_k[..tank.coils.len()];
-        coils_k.copy_from_slice(water.coils_k);
-        let mut trial =
-            Water { cells: water.cells.clone(), coils_k, rod_blocked: water.rod_blocked };
-        Some(tank.pass(with, &mut trial))
     }
 
     fn step<const N: usize>(
