@@ -1,10 +1,12 @@
 //! REGISTRY of the controllers: adding one is one file, its `mod` line and its line below; one with more
 //! than one channel and one signal also has a line in [`ports`].
 
+pub mod balancing;
 pub mod cascade;
 pub mod feed_forward;
 pub mod hysteresis;
 pub mod pi;
+pub mod storage_charging;
 pub mod thermostatic_valve;
 pub mod two_step;
 pub mod weighted_pi;
@@ -20,6 +22,8 @@ anergy_core::registry! {
         Hysteresis("hysteresis", hysteresis::Hysteresis, hysteresis::HysteresisParams),
         WeightedPi("weighted_pi", weighted_pi::WeightedPi, weighted_pi::WeightedPiParams),
         TwoStep("two_step", two_step::TwoStep, two_step::TwoStepParams),
+        StorageCharging("storage_charging", storage_charging::StorageCharging, storage_charging::StorageChargingParams),
+        Balancing("balancing", balancing::Balancing, balancing::BalancingParams),
         FeedForward("feed_forward", feed_forward::FeedForward, feed_forward::FeedForwardParams),
     }
 }
@@ -27,6 +31,8 @@ anergy_core::registry! {
 /// The channels and signals that a kind names.
 pub fn ports(kind: &str) -> Ports {
     match kind {
+        "balancing" => balancing::PORTS,
+        "storage_charging" => storage_charging::PORTS,
         "cascade" => cascade::PORTS,
         "two_step" => two_step::PORTS,
         "weighted_pi" => weighted_pi::PORTS,

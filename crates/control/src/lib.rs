@@ -2,5 +2,6 @@
 
 pub mod controller;
 pub mod controllers;
+pub mod modulation;
 pub mod sensor;
 pub mod swing;

@@ -30,6 +30,12 @@ pub struct Balances {
     pub stored_j: f64,
     /// Electricity of the pumps.
     pub electric_j: f64,
+    /// Electricity of the units.
+    pub units_electric_j: f64,
+    /// Heat that the units took up from outside, without water and electricity; demand is negative.
+    pub units_external_j: f64,
+    /// Change of the heat that the units hold.
+    pub units_stored_j: f64,
     /// Hydraulic work of pumps and boundaries.
     pub hydraulic_j: f64,
     /// Hydraulic work dissipated in the other elements.
@@ -57,6 +63,9 @@ impl Balances {
             loss_j: state.loss_j,
             stored_j: stored - state.initial_stored_j,
             electric_j: state.electric_j,
+            units_electric_j: state.units_electric_j,
+            units_external_j: state.units_external_j,
+            units_stored_j: simulation.units_stored_j() - state.units_initial_j,
             hydraulic_j: state.pump_hydraulic_j,
             dissipated_j: state.dissipated_j,
             resolution_j: RESOLUTION_K * capacity_j_k,
@@ -71,6 +80,13 @@ impl Balances {
         let terms = gained.into_iter().chain([self.loss_j, self.stored_j]);
         let gained_j = self.units_j + self.pump_heat_j + self.boundary_j + self.friction_j;
         relative(gained_j - self.loss_j - self.stored_j, terms, self.resolution_j)
+    }
+
+    /// Heat of the units that is not accounted for, relative to the heat that was moved.
+    pub fn units_error(&self) -> f64 {
+        let gained = [self.units_electric_j, self.units_external_j, -self.units_j];
+        let left_j = gained.iter().sum::<f64>() - self.units_stored_j;
+        relative(left_j, gained.into_iter().chain([self.units_stored_j]), self.resolution_j)
     }
 
     /// Hydraulic work that is not accounted for, relative to the work of the pumps, or to what flows are
@@ -261,6 +277,16 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
     });
     if let Some(steps) = state.stepping.report() {
         summary["automatic_step"] = steps;
+    }
+    if plan.has_houses()
+        && let Some(lines) = summary["balances"].as_array_mut()
+    {
+        let error = balances.units_error();
+        lines.extend([
+            balance("electricity of units", balances.units_electric_j / 3.6e6, "kWh", error),
+            balance("other heat into units", balances.units_external_j / 3.6e6, "kWh", error),
+            balance("heat stored in units", balances.units_stored_j / 3.6e6, "kWh", error),
+        ]);
     }
     let friction = balance("heat of friction", balances.friction_j / 3.6e6, "kWh", heat);
     if !state.network.friction_k.is_empty()

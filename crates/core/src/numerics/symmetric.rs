@@ -37,6 +37,8 @@ pub fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) 
 }
 
 /// Turns rows and columns p and q of the matrix, and the columns of the vectors.
+// Rows p and q are changed together, column by column.
+#[allow(clippy::needless_range_loop)]
 fn rotate<const N: usize>(
     a: &mut [[f64; N]; N],
     vectors: &mut [[f64; N]; N],
@@ -55,6 +57,7 @@ fn rotate<const N: usize>(
 }
 
 #[cfg(test)]
+#[allow(clippy::needless_range_loop)]
 mod tests {
     use super::*;
 

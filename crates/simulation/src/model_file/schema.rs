@@ -117,7 +117,7 @@ pub fn schema() -> Value {
     })
 }
 
-/// The stations with parts, and the plant.
+/// The stations with parts, the plant, and the stations in the grid water.
 fn station_schema() -> Value {
     let own = [
         ("type", json!({ "type": "string", "description": "Name of a station_type" })),
@@ -143,7 +143,11 @@ fn station_schema() -> Value {
     ];
     let station = with_parts(&schema_for!(StationEntry), &own, &stations);
     let plant = with_parts(&schema_for!(PlantEntry), &own[..1], &[StationKind::Plant]);
-    json!({ "oneOf": [station, plant] })
+    let prosumer = schema_for!(ProsumerEntry);
+    let prosumer = with_parts(&prosumer, &own, &[StationKind::Prosumer]);
+    let balancing = schema_for!(BalancingUnitEntry);
+    let balancing = with_parts(&balancing, &own, &[StationKind::BalancingUnit]);
+    json!({ "oneOf": [station, plant, prosumer, balancing] })
 }
 
 fn part_schema(part: &str) -> Value {
@@ -171,7 +175,7 @@ fn controllers() -> Value {
         own.extend(ports.measures.iter().map(|field| (*field, text("Channel it measures"))));
         own.extend(ports.acts_on.iter().map(|field| (*field, text("Signal it drives"))));
         let mut required: Vec<&str> = ports.measures.iter().chain(ports.acts_on).copied().collect();
-        if required.iter().any(|field| field.starts_with("measures_")) {
+        if *kind == "weighted_pi" {
             let meaning =
                 "Station whose channels and signals it takes where they are not named one by one";
             own.push(("station", text(meaning)));
