@@ -85,8 +85,8 @@ pub trait ThermalUnit {
     /// State at the start of a run in which all water has `initial_k`.
     fn initial_state(&self, initial_k: f64) -> Vec<f64>;
 
-    /// What the unit wants of its ports in the coming step; `got` is what they had in the last one. May be
-    /// asked several times for a step.
+    /// What the unit wants of its ports in the coming step; `got` is what they had in the last one, with the flows
+    /// that circuits will have where it takes them. May be asked several times for a step.
     fn request(
         &self,
         signals: &Signals<'_>,

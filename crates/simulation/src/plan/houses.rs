@@ -23,6 +23,14 @@ pub(crate) struct PlannedUnit {
     pub outputs: Range<usize>,
 }
 
+impl PlannedUnit {
+    /// Whether what it asks for at one port depends on the flow that it takes at another one.
+    pub(crate) fn hears_flows(&self) -> bool {
+        self.ports.iter().any(|port| port.sets_flow)
+            && self.ports.iter().any(|port| !port.sets_flow)
+    }
+}
+
 /// A port of a unit that stands on an edge of the network.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GridPort {

@@ -6,23 +6,52 @@ use anergy_core::signal::Signals;
 use anergy_prosumer::circuit::Undefined;
 
 impl Simulation {
-    /// Units say what they want of their ports.
+    /// Units say what they want of their ports; those that take the flow of a circuit and also ask for one
+    /// hear it first.
     pub(super) fn request_units(&mut self) {
-        let (plan, state) = (&self.plan, &mut self.state);
-        for unit in &plan.units {
-            unit.equipment.request(
-                &Signals(&state.signals[unit.inputs.clone()]),
-                &state.unit_ports[unit.slots.clone()],
-                &mut state.unit_states[unit.state.clone()],
-                &mut self.wanted[unit.slots.clone()],
-            );
+        for unit in 0..self.plan.units.len() {
+            self.request_unit(unit);
         }
+        for circuit in 0..self.plan.circuits.len() {
+            let m_flow_kg_s = self.circuit_kg_s(circuit);
+            let circuit = &self.plan.circuits[circuit].circuit;
+            for slot in circuit.members.iter().filter(|slot| Some(**slot) != circuit.driver) {
+                self.state.unit_ports[*slot].m_flow_kg_s = m_flow_kg_s;
+            }
+        }
+        for unit in 0..self.plan.units.len() {
+            if self.plan.units[unit].hears_flows() {
+                self.request_unit(unit);
+            }
+        }
+        let (plan, state) = (&self.plan, &mut self.state);
         for (port, place) in plan.grid_ports.iter().enumerate() {
             let wanted = self.wanted[place.slot];
             state.network.requests[port] = wanted;
             if let Some(command) = place.imposes_flow {
                 state.signals[command.index()] = wanted.m_flow_kg_s;
             }
+        }
+    }
+
+    fn request_unit(&mut self, unit: usize) {
+        let (unit, state) = (&self.plan.units[unit], &mut self.state);
+        unit.equipment.request(
+            &Signals(&state.signals[unit.inputs.clone()]),
+            &state.unit_ports[unit.slots.clone()],
+            &mut state.unit_states[unit.state.clone()],
+            &mut self.wanted[unit.slots.clone()],
+        );
+    }
+
+    /// Flow of a circuit, kg/s.
+    fn circuit_kg_s(&self, circuit: usize) -> f64 {
+        let planned = &self.plan.circuits[circuit];
+        match planned.v_flow {
+            Some(signal) => {
+                self.state.signals[signal.index()] * self.plan.network.medium.density_kg_m3
+            }
+            None => planned.circuit.m_flow_kg_s(&self.wanted),
         }
     }
 
@@ -102,10 +131,7 @@ impl Simulation {
     fn go_round(&mut self, i: usize) -> Result<(), RunError> {
         let planned = &self.plan.circuits[i];
         let medium = &self.plan.network.medium;
-        let m_flow_kg_s = match planned.v_flow {
-            Some(signal) => self.state.signals[signal.index()] * medium.density_kg_m3,
-            None => planned.circuit.m_flow_kg_s(&self.wanted),
-        };
+        let m_flow_kg_s = self.circuit_kg_s(i);
         let solved = planned.circuit.solve(
             m_flow_kg_s,
             medium.heat_capacity_j_kg_k,
