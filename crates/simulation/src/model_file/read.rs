@@ -7,14 +7,18 @@ mod drivers;
 mod effects;
 mod fluids;
 mod ground;
+mod house_types;
 mod pipe_types;
 mod plants;
+mod sections;
 mod sensors;
 mod station_types;
 mod three_way_valves;
 mod units;
 
 use self::pipe_types::PipeTypes;
+use self::sections::LISTS;
+pub(super) use self::sections::SECTIONS;
 use super::expand::{self, Plain};
 use super::tables::Rows;
 use super::*;
@@ -30,56 +34,6 @@ use anergy_core::medium::Medium;
 use jiff::Timestamp;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-
-/// The sections of a model file.
-pub(super) const SECTIONS: &[&str] = &[
-    "format",
-    "model",
-    "run",
-    "fluid",
-    "ground",
-    "pipe_type",
-    "network",
-    "station_type",
-    "site",
-    "trench",
-    "station",
-    "node",
-    "edge",
-    "three_way_valve",
-    "interface",
-    "unit",
-    "circuit",
-    "sensor",
-    "controller",
-    "worst_point",
-    "prescribed",
-    "schedule",
-    "series",
-    "pressure_reference",
-    "effect",
-];
-
-/// Those that can occur several times.
-const LISTS: [&str; 17] = [
-    "site",
-    "trench",
-    "station",
-    "node",
-    "edge",
-    "three_way_valve",
-    "interface",
-    "unit",
-    "circuit",
-    "sensor",
-    "controller",
-    "worst_point",
-    "prescribed",
-    "schedule",
-    "series",
-    "pressure_reference",
-    "effect",
-];
 
 /// Reads a whole document.
 ///
@@ -210,6 +164,7 @@ impl ModelReader<'_> {
         let mut interfaces = Vec::new();
         self.network(text);
         self.station_types();
+        self.furnish_houses();
         let so_far = std::mem::take(&mut self.reader.problems);
         self.types = self.pipe_types();
         self.later.types = std::mem::replace(&mut self.reader.problems, so_far);

@@ -67,6 +67,8 @@ pub fn schema() -> Value {
         "pipe_type": { "type": "object", "additionalProperties": pipe_type },
         "network": entry(&schema_for!(NetworkEntry), &[]),
         "station_type": { "type": "object", "additionalProperties": station_type },
+        "house_type": { "type": "object", "additionalProperties": house_schema(&[]) },
+        "house": list(house_schema(&["site", "type", "set"])),
         "site": list(entry(&schema_for!(SiteEntry), &[])),
         "trench": list(trench),
         "station": list(station),
@@ -148,6 +150,30 @@ fn station_schema() -> Value {
     let balancing = schema_for!(BalancingUnitEntry);
     let balancing = with_parts(&balancing, &own, &[StationKind::BalancingUnit]);
     json!({ "oneOf": [station, plant, prosumer, balancing] })
+}
+
+/// A house or its type: entries of other sections, within the house.
+fn house_schema(own: &[&str]) -> Value {
+    let mut properties = Map::new();
+    for part in ["station", "unit", "circuit", "sensor", "controller", "schedule", "series"] {
+        let one_or_more = json!({
+            "description": format!("As [[{part}]], with names within the house"),
+            "anyOf": [{ "type": "object" }, { "type": "array", "items": { "type": "object" } }],
+        });
+        properties.insert(part.into(), one_or_more);
+    }
+    for field in own {
+        let schema = match *field {
+            "site" => text("Site that it stands at"),
+            "type" => text("Name of a house_type"),
+            _ => {
+                json!({ "type": "object", "description": "Single fields: \"storage.volume_l\" = 500" })
+            }
+        };
+        properties.insert((*field).into(), schema);
+    }
+    let required: Vec<&str> = own.iter().copied().filter(|field| *field == "site").collect();
+    json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
 }
 
 fn part_schema(part: &str) -> Value {

@@ -139,9 +139,14 @@ fn fill(tree: &mut Tree, defaults: &Tree) {
 }
 
 /// The places of all values of a type and of its parts.
-fn spans(tree: &Tree) -> Vec<std::ops::Range<usize>> {
+pub(super) fn spans(tree: &Tree) -> Vec<std::ops::Range<usize>> {
     let own = tree.entries().iter().flat_map(|(key, value)| {
         [key.span.range(), value.span.range()].into_iter().flatten().chain(spans(value))
     });
+    let items = match &tree.kind {
+        TreeKind::Array(items) => items.as_slice(),
+        _ => &[],
+    };
+    let own = own.chain(items.iter().flat_map(spans));
     tree.span.range().into_iter().chain(own).collect()
 }
