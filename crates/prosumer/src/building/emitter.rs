@@ -143,7 +143,7 @@ impl Emitter {
     }
 
     /// The passage with the conductance that goes with its own excess; `room_k` gives the temperature of the room
-    /// for a passage. The conductance is changed to the one used.
+    /// for a passage. The conductance becomes the one that the next step begins with.
     pub fn settled_passage(
         &self,
         dt_s: f64,
@@ -158,17 +158,13 @@ impl Emitter {
             let t_room_k = room_k(&passage);
             let excess_k = passage.emitted_w.at(t_room_k) / *conductance_w_k;
             let found = self.conductance_w_k(excess_k);
-            if round == ROUNDS || (found - *conductance_w_k).abs() <= SETTLED * found {
+            let settled = (found - *conductance_w_k).abs() <= SETTLED * found;
+            *conductance_w_k = found;
+            if settled || round == ROUNDS {
                 return (passage, t_room_k);
             }
-            *conductance_w_k = found;
             round += 1;
         }
-    }
-
-    /// The conductance for the next step, W/K, from the heat emitted with the one of this step.
-    pub fn next_conductance_w_k(&self, emitted_w: f64, conductance_w_k: f64) -> f64 {
-        self.conductance_w_k(emitted_w / conductance_w_k)
     }
 
     /// Advances the cells with the heat the water gave off, W; what it gave more than the passage says goes
@@ -242,9 +238,7 @@ mod tests {
             let outlet_k = passage.outlet_k.at(t_room_k);
             let water_w = stream.capacity_w_k * (stream.t_in_k - outlet_k);
             emitter.advance(dt_s, &passage, t_room_k, stream, water_w, &mut cells);
-            let emitted_w = passage.emitted_w.at(t_room_k);
-            conductance = emitter.next_conductance_w_k(emitted_w, conductance);
-            last = (outlet_k, emitted_w);
+            last = (outlet_k, passage.emitted_w.at(t_room_k));
         }
         last
     }

@@ -164,35 +164,35 @@ impl RcNetwork {
             lambda: lambda.map(|value| value.max(0.0)),
             to_modes: [[0.0; N]; N],
             from_modes: [[0.0; N]; N],
-            force: [[0.0; U]; N],
-            of_modes: [[0.0; N]; Y],
-            of_inputs: [[0.0; U]; Y],
+            force: [[0.0; N]; U],
+            of_modes: [[0.0; Y]; N],
+            of_inputs: [[0.0; Y]; U],
         };
         for (i, node) in held.iter().enumerate() {
             model.capacity_j_k[i] = self.capacity_j_k[*node];
             for mode in 0..N {
-                model.to_modes[mode][i] = vectors[i][mode] / scale[i];
-                model.from_modes[i][mode] = vectors[i][mode] * scale[i];
+                model.to_modes[i][mode] = vectors[i][mode] / scale[i];
+                model.from_modes[mode][i] = vectors[i][mode] * scale[i];
             }
         }
         for mode in 0..N {
             for input in 0..U {
-                model.force[mode][input] =
+                model.force[input][mode] =
                     (0..held.len()).map(|i| vectors[i][mode] * scale[i] * force[i][input]).sum();
             }
         }
         for &Weight { node, index, value } in &self.observed {
             for mode in 0..N {
                 let temperature: f64 =
-                    (0..held.len()).map(|i| of_held[node][i] * model.from_modes[i][mode]).sum();
-                model.of_modes[index][mode] += value * temperature;
+                    (0..held.len()).map(|i| of_held[node][i] * model.from_modes[mode][i]).sum();
+                model.of_modes[mode][index] += value * temperature;
             }
             for input in 0..U {
-                model.of_inputs[index][input] += value * of_inputs[node][input];
+                model.of_inputs[input][index] += value * of_inputs[node][input];
             }
         }
         for &(output, input, value) in &self.observed_inputs {
-            model.of_inputs[output][input] += value;
+            model.of_inputs[input][output] += value;
         }
         Some(model)
     }
@@ -204,11 +204,12 @@ pub struct RcModel<const N: usize, const U: usize, const Y: usize> {
     nodes: usize,
     capacity_j_k: [f64; N],
     lambda: [f64; N],
+    /// Matrices as columns: `to_modes[i]` is what temperature i does to all modes.
     to_modes: [[f64; N]; N],
     from_modes: [[f64; N]; N],
-    force: [[f64; U]; N],
-    of_modes: [[f64; N]; Y],
-    of_inputs: [[f64; U]; Y],
+    force: [[f64; N]; U],
+    of_modes: [[f64; Y]; N],
+    of_inputs: [[f64; Y]; U],
 }
 
 /// A step that is under way: inputs may still be added.
@@ -233,23 +234,24 @@ const SMALL: f64 = 0.02;
 pub fn means(x: f64) -> (f64, f64) {
     if x < SMALL {
         // The first term left out is x^6/40320.
-        let chi = 0.5
-            - x * (1.0 / 6.0
-                - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x / 5040.0))));
+        let inner = 1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0));
+        let chi = 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * inner));
         (1.0 - x * chi, chi)
     } else {
-        let phi = (1.0 - (-x).exp()) / x;
-        (phi, (1.0 - phi) / x)
+        let inverse = 1.0 / x;
+        let phi = (1.0 - (-x).exp()) * inverse;
+        (phi, (1.0 - phi) * inverse)
     }
 }
 
+/// Adds a matrix, as its columns, times a vector: column by column, so that the sums are independent.
 #[inline]
-fn dot<const K: usize>(a: &[f64; K], b: &[f64; K]) -> f64 {
-    let mut sum = 0.0;
-    for k in 0..K {
-        sum += a[k] * b[k];
+fn add_product<const M: usize>(columns: &[[f64; M]], vector: &[f64], sum: &mut [f64; M]) {
+    for (column, x) in columns.iter().zip(vector) {
+        for m in 0..M {
+            sum[m] += column[m] * x;
+        }
     }
-    sum
 }
 
 impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
@@ -267,8 +269,6 @@ impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
     /// Begins a step from the temperatures of the state with inputs that are constant over it.
     #[inline]
     pub fn begin(&self, dt_s: f64, t_k: &[f64], inputs: [f64; U]) -> RcStep<N, U> {
-        let mut full = [0.0; N];
-        full[..self.nodes].copy_from_slice(&t_k[..self.nodes]);
         let mut step = RcStep {
             dt_s,
             inputs,
@@ -277,9 +277,9 @@ impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
             phi: [0.0; N],
             chi_s: [0.0; N],
         };
+        add_product(&self.to_modes, &t_k[..self.nodes], &mut step.start);
+        add_product(&self.force, &inputs, &mut step.force);
         for mode in 0..N {
-            step.start[mode] = dot(&self.to_modes[mode], &full);
-            step.force[mode] = dot(&self.force[mode], &inputs);
             let (phi, chi) = means(self.lambda[mode] * dt_s);
             (step.phi[mode], step.chi_s[mode]) = (phi, chi * dt_s);
         }
@@ -289,9 +289,9 @@ impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
     /// How much the mean of an output rises per unit of an input that acts over the step.
     #[inline]
     pub fn response(&self, step: &RcStep<N, U>, output: usize, input: usize) -> f64 {
-        let mut sum = self.of_inputs[output][input];
+        let mut sum = self.of_inputs[input][output];
         for mode in 0..N {
-            sum += self.of_modes[output][mode] * step.chi_s[mode] * self.force[mode][input];
+            sum += self.of_modes[mode][output] * step.chi_s[mode] * self.force[input][mode];
         }
         sum
     }
@@ -299,9 +299,12 @@ impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
     /// Mean of an output over the step with the inputs so far.
     #[inline]
     pub fn mean(&self, step: &RcStep<N, U>, output: usize) -> f64 {
-        let mut sum = dot(&self.of_inputs[output], &step.inputs);
+        let mut sum = 0.0;
+        for (of_input, value) in self.of_inputs.iter().zip(&step.inputs) {
+            sum += of_input[output] * value;
+        }
         for mode in 0..N {
-            sum += self.of_modes[output][mode] * step.mean(mode);
+            sum += self.of_modes[mode][output] * step.mean(mode);
         }
         sum
     }
@@ -311,7 +314,7 @@ impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
     pub fn add(&self, step: &mut RcStep<N, U>, input: usize, value: f64) {
         step.inputs[input] += value;
         for mode in 0..N {
-            step.force[mode] += self.force[mode][input] * value;
+            step.force[mode] += self.force[input][mode] * value;
         }
     }
 
@@ -324,14 +327,14 @@ impl<const N: usize, const U: usize, const Y: usize> RcModel<N, U, Y> {
             mean[mode] = step.mean(mode);
             change[mode] = step.dt_s * (step.force[mode] - self.lambda[mode] * mean[mode]);
         }
-        for (t, row) in t_k.iter_mut().zip(&self.from_modes).take(self.nodes) {
-            *t += dot(row, &change);
+        let mut rise = [0.0; N];
+        add_product(&self.from_modes, &change, &mut rise);
+        for (t, rise) in t_k.iter_mut().zip(rise).take(self.nodes) {
+            *t += rise;
         }
         let mut out = [0.0; Y];
-        for (output, value) in out.iter_mut().enumerate() {
-            *value =
-                dot(&self.of_modes[output], &mean) + dot(&self.of_inputs[output], &step.inputs);
-        }
+        add_product(&self.of_modes, &mean, &mut out);
+        add_product(&self.of_inputs, &step.inputs, &mut out);
         out
     }
 }

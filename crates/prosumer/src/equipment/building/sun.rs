@@ -1,14 +1,17 @@
 //! What the sun sends onto a house.
 //!
-//! **Equation** the mean irradiance of the outer walls and of the windows in them over the four sides, the free
-//! ones by their length; the roof gets what the horizontal gets on the footprint, 1/1.3 of it per area of its
-//! slopes. **Assumptions** a free horizon, isotropic sky, windows evenly over the free sides, an albedo of 0.2.
-//! **Sources** [`anergy_core::solar`].
+//! **Equation** the mean irradiance of the four sides, vertical planes at right angles, with `l` the share of the
+//! long ones (front and back), `g` the azimuth of the front and `h` the elevation:
+//! ```text
+//! beam = G_bn cos h (l/2 |cos(a - g)| + (1 - l)/2 |sin(a - g)|)     of two opposite sides one is in the sun
+//! sky = G_d/2,  ground = 0.2 G_h/2
+//! ```
+//! The roof gets what the horizontal gets on the footprint. **Assumptions** a free horizon, isotropic sky, windows
+//! evenly over the free sides. **Sources** `liu1963`; the same as [`anergy_core::solar::Plane`] four times (tested).
 
 use crate::building::envelope::Areas;
 use crate::building::house::OUTER_FILM_W_M2_K;
-use anergy_core::solar::{HorizontalIrradiance, Plane, Sky, SunPosition};
-use std::f64::consts::{FRAC_PI_2, PI};
+use anergy_core::solar::{HorizontalIrradiance, SunPosition};
 
 /// Share of the sun that outer walls and roofs take up.
 const ABSORBED: f64 = 0.5;
@@ -17,8 +20,10 @@ const ALBEDO: f64 = 0.2;
 /// The sides of a house towards the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sun {
-    /// Walls in front, behind, to the left and the right, and their shares.
-    sides: [(Plane, f64); 4],
+    /// Where the front looks, rad.
+    azimuth_rad: f64,
+    /// Share of front and back.
+    long_share: f64,
     /// Windows times what comes through, m2.
     window_m2: f64,
     /// Footprint per area of the roof.
@@ -37,17 +42,9 @@ pub(super) struct Sunshine {
 
 impl Sun {
     pub fn new(areas: &Areas, azimuth_rad: f64, passed: f64) -> Self {
-        let side = |turn_rad: f64, share: f64| {
-            (Plane::new(FRAC_PI_2, azimuth_rad + turn_rad, ALBEDO), 0.5 * share)
-        };
-        let (long, short) = (areas.long_share, 1.0 - areas.long_share);
         Self {
-            sides: [
-                side(0.0, long),
-                side(PI, long),
-                side(-FRAC_PI_2, short),
-                side(FRAC_PI_2, short),
-            ],
+            azimuth_rad,
+            long_share: areas.long_share,
             window_m2: areas.window_m2 * passed,
             roof_share: areas.footprint_m2 / areas.roof_m2,
         }
@@ -58,12 +55,11 @@ impl Sun {
         if global_w_m2 <= 0.0 && beam_normal_w_m2 <= 0.0 && diffuse_w_m2 <= 0.0 {
             return Sunshine::default();
         }
-        let mut walls_w_m2 = 0.0;
-        for (plane, share) in &self.sides {
-            if *share > 0.0 {
-                let irradiance = plane.irradiance(Sky::Isotropic, position, horizontal);
-                walls_w_m2 += share * irradiance.total_w_m2();
-            }
+        let mut walls_w_m2 = 0.5 * diffuse_w_m2 + 0.5 * ALBEDO * global_w_m2;
+        if position.elevation_rad > 0.0 {
+            let (sin, cos) = (position.azimuth_rad - self.azimuth_rad).sin_cos();
+            let seen = self.long_share * cos.abs() + (1.0 - self.long_share) * sin.abs();
+            walls_w_m2 += 0.5 * beam_normal_w_m2 * position.elevation_rad.cos() * seen;
         }
         Sunshine {
             windows_w: walls_w_m2 * self.window_m2,
@@ -76,6 +72,8 @@ impl Sun {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use anergy_core::solar::{Plane, Sky};
+    use std::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
     fn by_hand() {
@@ -116,5 +114,17 @@ mod tests {
         assert!(
             (sun.shines(horizontal, west).windows_w - (0.2 * 433.013 + 85.0) * 18.9).abs() < 0.1
         );
+        // Any sun on a turned house: the four planes one by one.
+        let turned = Sun::new(&areas, 0.4, 0.42);
+        for (elevation_rad, azimuth_rad) in [(-0.1, 0.0), (0.2, 1.0), (0.9, -2.5), (1.3, 3.0)] {
+            let position = SunPosition { elevation_rad, azimuth_rad };
+            let mut mean = 0.0;
+            for (turn, share) in [(0.0, 0.3), (PI, 0.3), (FRAC_PI_2, 0.2), (-FRAC_PI_2, 0.2)] {
+                let plane = Plane::new(FRAC_PI_2, 0.4 + turn, ALBEDO);
+                mean += share * plane.irradiance(Sky::Isotropic, position, horizontal).total_w_m2();
+            }
+            let windows_w = turned.shines(horizontal, position).windows_w;
+            assert!((windows_w - 18.9 * mean).abs() < 1e-9, "{windows_w} {mean}");
+        }
     }
 }
