@@ -181,6 +181,7 @@ id = "cool"
 kind = "building"
 construction = "enev_2016"
 outdoor_degc = 22
+ground_degc = -1
 initial_living_degc = 23
 heating = false
 cooling = true

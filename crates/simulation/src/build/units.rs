@@ -205,7 +205,8 @@ impl Builder<'_> {
             let first = signals.specs().len();
             for input in equipment.inputs() {
                 let name = format!("{}.{}", spec.id, input.name);
-                let around = input.name.contains("outdoor") || input.name.contains("ambient");
+                let around = ["outdoor", "ambient", "ground"];
+                let around = around.iter().any(|word| input.name.contains(word));
                 let signal = if input.unit == "k" && !input.name.contains("difference") {
                     let range = if around { SURROUNDINGS } else { self.liquid() };
                     temperature_signal(&name, input.initial, &range)
