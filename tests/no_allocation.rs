@@ -67,6 +67,15 @@ fn the_counter_counts() {
 }
 
 #[test]
+fn heat_pumps_that_start_stop_and_defrost() {
+    let folder = workspace().join("examples/heat-pumps");
+    let text = std::fs::read_to_string(folder.join("model.toml")).unwrap();
+    let model = Model::from_toml(&text, &folder).unwrap();
+    // Pipes have held as many parcels as they will by then; stops, starts, a defrost and a change of mode follow.
+    assert_no_allocation(&mut simulation(&model), &[], (190, 160), 60);
+}
+
+#[test]
 fn demo_with_changing_pumps() {
     // SF2 at 85 %, as after its schedule, so that SF1 is not blocked.
     let pumps = [("sf1.feed_in_pump", 0.95), ("sf2.feed_in_pump", 0.85)];

@@ -10,6 +10,7 @@
 //! needs no blend; no division by a flow. **Sources** `incropera2007`, `wetter2014`.
 
 use crate::two_port::Exchanger;
+use anergy_core::effectiveness::counter_flow;
 
 /// Heat conductance between the inlet temperatures, W/K: `Q = conductance (T1 - T2)`.
 ///
@@ -35,16 +36,6 @@ pub fn inlet_conductance_w_k(
         -(-ntu * (1.0 + z)).exp_m1() / (1.0 + z)
     };
     eps * c_min
-}
-
-fn counter_flow(ntu: f64, z: f64, band: f64) -> f64 {
-    let one_minus_z = 1.0 - z;
-    if one_minus_z < band.max(1e-12) {
-        return ntu / (1.0 + ntu);
-    }
-    // (1 - e)/(1 - Z e) with e = exp(-x): 1 - Z e = (1 - Z) + Z (1 - e)
-    let loss = -(-ntu * one_minus_z).exp_m1();
-    loss / (one_minus_z + z * loss)
 }
 
 fn ua_w_k(exchanger: &Exchanger, m1: f64, m2: f64) -> f64 {

@@ -1,7 +1,10 @@
 //! REGISTRY of the thermal units: adding one is one file, its `mod` line and its line below.
 
+pub mod air_source_heat_pump;
+pub mod booster_heat_pump;
 pub mod building;
 pub mod cooling_load;
+pub mod direct_exchanger;
 pub mod heat_load;
 pub mod heat_source;
 pub mod ideal_house;
@@ -17,6 +20,10 @@ anergy_core::registry! {
         PrescribedSource("prescribed_source", prescribed_source::PrescribedSource, prescribed_source::PrescribedSourceParams),
         HeatLoad("heat_load", heat_load::HeatLoad, heat_load::HeatLoadParams),
         HeatSource("heat_source", heat_source::HeatSource, heat_source::HeatSourceParams),
+        AirSourceHeatPump("air_source_heat_pump", air_source_heat_pump::AirSourceHeatPump, air_source_heat_pump::AirSourceHeatPumpParams),
+        BoosterHeatPump("booster_heat_pump", booster_heat_pump::BoosterHeatPump, booster_heat_pump::BoosterHeatPumpParams),
+        BoosterTransferStation("booster_transfer_station", booster_heat_pump::BoosterHeatPump, booster_heat_pump::BoosterTransferStationParams),
+        DirectExchanger("direct_exchanger", direct_exchanger::DirectExchanger, direct_exchanger::DirectExchangerParams),
         IdealHouse("ideal_house", ideal_house::IdealHouse, ideal_house::IdealHouseParams),
         CoolingLoad("cooling_load", cooling_load::CoolingLoad, cooling_load::CoolingLoadParams),
         Building("building", building::Building, building::BuildingParams),

@@ -2,5 +2,9 @@
 
 pub mod building;
 pub mod circuit;
+pub mod compressor;
+pub mod direct_exchange;
 pub mod equipment;
+pub mod heat_pump;
+pub mod performance_map;
 pub mod thermal_unit;

@@ -85,6 +85,9 @@ pub trait ThermalUnit {
     /// State at the start of a run in which all water has `initial_k`.
     fn initial_state(&self, initial_k: f64) -> Vec<f64>;
 
+    /// A step of `dt_s` is about to be asked for: what is wanted of the ports are means over it; 0 for a steady state.
+    fn begin(&self, _dt_s: f64, _state: &mut [f64]) {}
+
     /// What the unit wants of its ports in the coming step; `got` is what they had in the last one, with the flows
     /// that circuits will have where it takes them. May be asked several times for a step.
     fn request(
@@ -149,6 +152,14 @@ pub enum UnitError {
         /// Highest temperature, degC.
         max_degc: f64,
     },
+    /// A field that is wrong inside.
+    #[error("{problem}")]
+    Inside {
+        /// Field of the model file, in SI.
+        field: &'static str,
+        /// Sentence naming it.
+        problem: String,
+    },
     /// Two fields of which exactly one must be given.
     #[error("{problem}")]
     Fields {
@@ -161,7 +172,9 @@ impl UnitError {
     /// The field concerned, where one field is.
     pub fn field(&self) -> Option<&'static str> {
         match self {
-            Self::OutOfRange { field, .. } | Self::NotLiquid { field, .. } => Some(field),
+            Self::OutOfRange { field, .. }
+            | Self::NotLiquid { field, .. }
+            | Self::Inside { field, .. } => Some(field),
             Self::Fields { .. } => None,
         }
     }
@@ -171,4 +184,39 @@ impl UnitError {
 #[inline]
 pub(crate) fn capacity_w_k(medium: &Medium, m_flow_kg_s: f64) -> f64 {
     m_flow_kg_s.abs() * medium.heat_capacity_j_kg_k
+}
+
+/// A number above zero.
+///
+/// # Errors
+/// Names the field and its value.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64, UnitError> {
+    let requirement = "must be positive";
+    match value {
+        _ if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err(UnitError::OutOfRange { field, value, requirement }),
+    }
+}
+
+/// A number that is not below zero.
+///
+/// # Errors
+/// Names the field and its value.
+pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<f64, UnitError> {
+    let requirement = "must not be negative";
+    match value {
+        _ if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err(UnitError::OutOfRange { field, value, requirement }),
+    }
+}
+
+/// A number between 0 and 1.
+///
+/// # Errors
+/// Names the field and its value.
+pub(crate) fn share(field: &'static str, value: f64) -> Result<f64, UnitError> {
+    match value {
+        0.0..=1.0 => Ok(value),
+        _ => Err(UnitError::OutOfRange { field, value, requirement: "must lie between 0 and 1" }),
+    }
 }

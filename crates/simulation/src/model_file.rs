@@ -8,6 +8,7 @@ mod duration;
 pub mod expand;
 mod fluid;
 mod ground;
+mod heat_pump_map;
 mod houses;
 mod nodes;
 mod plant;

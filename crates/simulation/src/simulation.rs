@@ -104,7 +104,7 @@ impl Simulation {
         }
         self.follow_seasons(Time::ZERO);
         self.follow_signals();
-        self.request_units();
+        self.request_units(0.0);
         self.drive_stations();
         self.apply_inputs();
         self.state.network.rest_soil(&self.plan.network.soil);
@@ -168,7 +168,7 @@ impl Simulation {
         if end < latest {
             self.drive_inputs(end);
         }
-        self.request_units();
+        self.request_units((end - now).as_s());
         self.drive_stations();
         self.apply_inputs();
         self.move_actuators((end - now).as_s());
@@ -300,7 +300,7 @@ impl Simulation {
     /// Settles actuators, flows and temperatures once with the present signals; used by the steady
     /// solve. Returns the hydraulic report.
     pub(crate) fn settle_once(&mut self) -> Result<HydraulicReport, RunError> {
-        self.request_units();
+        self.request_units(0.0);
         self.drive_stations();
         self.apply_inputs();
         self.move_actuators(f64::INFINITY);

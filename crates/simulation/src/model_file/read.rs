@@ -7,6 +7,7 @@ mod drivers;
 mod effects;
 mod fluids;
 mod ground;
+mod heat_pump_maps;
 mod house_types;
 mod pipe_types;
 mod plants;
@@ -54,6 +55,7 @@ pub fn model(mut tree: Tree, text: &str, dir: &Path) -> Result<Model, Diagnostic
         medium: Medium::default(),
         longest_step_s: 0.0,
         types: PipeTypes::new(),
+        maps: HashMap::new(),
         nodes: Vec::new(),
         edges: Vec::new(),
         later: Later::default(),
@@ -102,6 +104,7 @@ struct ModelReader<'a> {
     /// The longest step of the run, s.
     longest_step_s: f64,
     types: PipeTypes,
+    maps: heat_pump_maps::HeatPumpMaps,
     nodes: Vec<NodeSpec>,
     edges: Vec<EdgeSpec>,
     later: Later,

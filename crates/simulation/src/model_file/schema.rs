@@ -8,6 +8,7 @@ use anergy_core::units::alternatives;
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_prosumer::equipment::EquipmentParams;
+use anergy_prosumer::performance_map::params::PerformanceMapParams;
 use schemars::{Schema, schema_for};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -65,6 +66,10 @@ pub fn schema() -> Value {
         "fluid": entry(&schema_for!(FluidEntry), &[]),
         "ground": entry(&schema_for!(GroundEntry), &[]),
         "pipe_type": { "type": "object", "additionalProperties": pipe_type },
+        "heat_pump_map": {
+            "type": "object",
+            "additionalProperties": entry(&schema_for!(PerformanceMapParams), &[]),
+        },
         "network": entry(&schema_for!(NetworkEntry), &[]),
         "station_type": { "type": "object", "additionalProperties": station_type },
         "house_type": { "type": "object", "additionalProperties": house_schema(&[]) },

@@ -6,9 +6,13 @@ use anergy_core::signal::Signals;
 use anergy_prosumer::circuit::Undefined;
 
 impl Simulation {
-    /// Units say what they want of their ports; those that take the flow of a circuit and also ask for one
-    /// hear it first.
-    pub(super) fn request_units(&mut self) {
+    /// Units say what they want of their ports in a step of `dt_s`, or in a steady state (0); those that take the
+    /// flow of a circuit and also ask for one hear it first.
+    pub(super) fn request_units(&mut self, dt_s: f64) {
+        let (plan, state) = (&self.plan, &mut self.state);
+        for unit in &plan.units {
+            unit.equipment.begin(dt_s, &mut state.unit_states[unit.state.clone()]);
+        }
         for unit in 0..self.plan.units.len() {
             self.request_unit(unit);
         }

@@ -8,6 +8,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "fluid",
     "ground",
     "pipe_type",
+    "heat_pump_map",
     "network",
     "station_type",
     "house_type",

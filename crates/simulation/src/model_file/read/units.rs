@@ -44,6 +44,7 @@ impl ModelReader<'_> {
     }
 
     pub(super) fn units(&mut self, stations: &Stations, circuits: &[CircuitSpec]) -> Vec<UnitSpec> {
+        self.maps = self.heat_pump_maps();
         let items = self.items("unit");
         items.into_iter().filter_map(|tree| self.unit(tree, stations, circuits)).collect()
     }
@@ -109,6 +110,7 @@ impl ModelReader<'_> {
         words.what = format!("unit \"{id}\"");
         let kind = self.kind::<EquipmentParams>(&mut words)?;
         words.what = format!("unit \"{id}\" ({kind})");
+        self.place_maps(&mut words, &kind)?;
         let (params, place) = self.parameters(words, &kind)?;
         Some(UnitSpec { id: id.into(), port: port.into(), params, place })
     }
