@@ -244,9 +244,9 @@ fn charging_in_waves() {
     }
     page.push_str(
         "\nWith plug flow the water below the outlet stays as cold as it was (layer 2 is cold to more than half), which \
-         the truth mixes by what it draws along: that is the 9 K of layers 2-9. Layer 10 lies above the port and is \
-         warmed by buoyancy only when the port is in the layer below it by its height. The state of charge is the heat \
-         of 20 kW in all of them.\n",
+         the truth mixes by what it draws along: that is the 9 K of layers 2-9, and of the hundred layers that draw nothing \
+         along. By its height the inlet is in layer 10 of ten, which is then mixed with it; in the truth most of layer \
+         10 lies above it. The state of charge follows the heat, 20 kW in all of them.\n",
     );
     let [hundred, fifty, ten, .., mixed] = &models;
     // (b) 785 l above 0.26 m are 669 l, 46.6 min at 14.35 l/min: the waves of 20 K pass at this distance, later

@@ -65,7 +65,7 @@ impl AuxHeater {
 }
 
 fn inside(field: &'static str, problem: String) -> UnitError {
-    UnitError::Inside { field, problem }
+    UnitError::Within { field, problem }
 }
 
 /// The map of a choice, `field` naming it.

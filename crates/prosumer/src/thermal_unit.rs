@@ -152,12 +152,12 @@ pub enum UnitError {
         /// Highest temperature, degC.
         max_degc: f64,
     },
-    /// A field that is wrong inside.
+    /// Something within a field that is a table or a list.
     #[error("{problem}")]
-    Inside {
+    Within {
         /// Field of the model file, in SI.
         field: &'static str,
-        /// Sentence naming it.
+        /// Sentence naming what is wrong.
         problem: String,
     },
     /// Two fields of which exactly one must be given.
@@ -174,7 +174,7 @@ impl UnitError {
         match self {
             Self::OutOfRange { field, .. }
             | Self::NotLiquid { field, .. }
-            | Self::Inside { field, .. } => Some(field),
+            | Self::Within { field, .. } => Some(field),
             Self::Fields { .. } => None,
         }
     }

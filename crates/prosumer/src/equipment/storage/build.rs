@@ -32,6 +32,18 @@ fn not_negative(field: &'static str, value: f64) -> Result<f64, UnitError> {
     Err(UnitError::OutOfRange { field, value, requirement: "must not be negative" })
 }
 
+fn within<T>(field: &'static str, problem: String) -> Result<T, UnitError> {
+    Err(UnitError::Within { field, problem })
+}
+
+fn of_coils<T>(problem: String) -> Result<T, UnitError> {
+    within("coils", problem)
+}
+
+fn of_rod<T>(problem: String) -> Result<T, UnitError> {
+    within("rod", problem)
+}
+
 /// A number of a coil or of the rod.
 fn part(
     of: &str,
@@ -43,7 +55,10 @@ fn part(
     if value.is_finite() && fits {
         return Ok(value);
     }
-    fields(format!("{of}: {field} = {value} {requirement}"))
+    within(
+        if of == "rod" { "rod" } else { "coils" },
+        format!("{of}: {field} = {value} {requirement}"),
+    )
 }
 
 impl StorageParams {
@@ -60,7 +75,7 @@ impl StorageParams {
             heat_capacity_j_kg_k: medium.heat_capacity_j_kg_k,
         };
         if !(1..=MAX_LAYERS).contains(&self.layers) {
-            return fields(format!("layers = {} must be 1 to {MAX_LAYERS}", self.layers));
+            return within("layers", format!("layers = {} must be 1 to {MAX_LAYERS}", self.layers));
         }
         let streams = self.ports.len() + self.coils.len();
         if streams > MAX_PORTS {
@@ -81,7 +96,7 @@ impl StorageParams {
         let rod = self.rod.as_ref().map(|rod| rod.build(&layers)).transpose()?;
         if rod.as_ref().is_some_and(|rod| !medium.is_liquid(rod.t_max_k)) {
             let t_max_k = rod.as_ref().map_or(f64::NAN, |rod| rod.t_max_k);
-            return fields(format!(
+            return of_rod(format!(
                 "rod: t_max_k = {t_max_k} is no temperature of {}",
                 medium.name()
             ));
@@ -128,10 +143,11 @@ impl StorageParams {
         let mut losses: Vec<f64> = areas.iter().map(|area| area * u_w_m2_k).collect();
         let bridges = self.bridges_w_k.len();
         if bridges > 0 && bridges != layers.count {
-            return fields(format!(
+            let problem = format!(
                 "bridges_w_k has {bridges} values for {} layers: one per layer, from the bottom",
                 layers.count
-            ));
+            );
+            return within("bridges_w_k", problem);
         }
         for (loss, bridge) in losses.iter_mut().zip(&self.bridges_w_k) {
             *loss += not_negative("bridges_w_k", *bridge)?;
@@ -173,10 +189,11 @@ impl StorageParams {
             (None, None, None) if !self.initial_layers_k.is_empty() => {
                 let values = self.initial_layers_k.len();
                 if values != layers.count {
-                    return fields(format!(
+                    let problem = format!(
                         "initial_layers_k has {values} values for {} layers: initial_sensors_k takes any number",
                         layers.count
-                    ));
+                    );
+                    return within("initial_layers_k", problem);
                 }
                 of_layers("initial_layers_k", &self.initial_layers_k)
             }
@@ -209,7 +226,7 @@ impl StorageCoil {
                         )?;
                     }
                     if inlet_m == outlet_m {
-                        return fields(format!("{of}: inlet_m and outlet_m are the same height"));
+                        return of_coils(format!("{of}: inlet_m and outlet_m are the same height"));
                     }
                     (inlet_m, outlet_m)
                 }
@@ -225,7 +242,7 @@ impl StorageCoil {
                     if inlet <= outlet { (low_m, high_m) } else { (high_m, low_m) }
                 }
                 _ => {
-                    return fields(format!(
+                    return of_coils(format!(
                         "{of}: give either inlet_m and outlet_m or inlet_layer and outlet_layer"
                     ));
                 }
@@ -254,7 +271,7 @@ impl StorageRod {
                 layers.shares_of_stretch(bottom_m, top_m)
             }
             (Some(bottom_m), Some(top_m), None) => {
-                return fields(format!(
+                return of_rod(format!(
                     "rod: bottom_m = {bottom_m} and top_m = {top_m} must rise within 0 to height_m = {}",
                     layers.height_m
                 ));
@@ -265,15 +282,15 @@ impl StorageRod {
                 share
             }
             (None, None, Some(layer)) => {
-                return fields(format!(
+                return of_rod(format!(
                     "rod: layer = {layer} must be 1 (bottom) to {}",
                     layers.count
                 ));
             }
-            _ => return fields("rod: give either bottom_m and top_m or layer".to_owned()),
+            _ => return of_rod("rod: give either bottom_m and top_m or layer".to_owned()),
         };
         if self.steps == Some(0) {
-            return fields("rod: steps = 0: leave it out for a continuous power".to_owned());
+            return of_rod("rod: steps = 0: leave it out for a continuous power".to_owned());
         }
         Ok(Rod {
             share,

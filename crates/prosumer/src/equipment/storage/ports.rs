@@ -213,7 +213,7 @@ type End = (Option<f64>, Option<usize>);
 
 /// A sentence about a port.
 pub(super) fn refused(name: &str, problem: &str, hint: &str) -> UnitError {
-    UnitError::Fields { problem: format!("ports.{name} {problem}: {hint}") }
+    UnitError::Within { field: "ports", problem: format!("ports.{name} {problem}: {hint}") }
 }
 
 /// Mass below and layer of an end.
