@@ -59,8 +59,8 @@ ambient_degc = 18
 soc_empty_degc = 30
 soc_full_degc = 70
 ports = {{ charge = {{ inlet_m = 1.6, outlet_m = 0.26 }}, heating = {{ positions = [{{ inlet_m = 0.1, outlet_m = 1.7 }}, {{ inlet_m = 0.1, outlet_m = 1.0 }}] }} }}
-coils = {{ solar = {{ area_m2 = 2.5, volume_m3 = 0.0165, inlet_layer = 5, outlet_layer = 1 }} }}
-rod = {{ power_w = 6000, layer = 7, steps = 3 }}
+coils = {{ solar = {{ area_m2 = 2.5, volume_l = 16.5, inlet_layer = 5, outlet_layer = 1 }} }}
+rod = {{ power_kw = 6, layer = 7, steps = 3 }}
 [[unit]]
 id = "collector"
 kind = "prescribed_source"

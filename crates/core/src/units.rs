@@ -93,7 +93,7 @@ pub fn split_suffix(name: &str) -> Option<(&str, &str)> {
 
 /// Whether the kelvin of a quantity are those of a difference, which must not be read as degC.
 pub fn is_difference(stem: &str) -> bool {
-    stem.ends_with("difference") || stem.ends_with("amplitude")
+    ["difference", "amplitude", "hysteresis"].iter().any(|end| stem.ends_with(end))
 }
 
 /// Units a value of SI suffix `si` can also be written in. A temperature difference has none.

@@ -8,7 +8,7 @@ use crate::document::{Tree, TreeKind};
 use crate::grammar::{Grammar, Registered};
 use crate::model::WrittenField;
 use crate::wording::{named, type_error};
-use anergy_core::units::Unit;
+use anergy_core::units::{Unit, alternatives};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
@@ -118,9 +118,10 @@ impl Reader {
                 continue;
             }
             let written = value.to_json();
-            let si_value = match spelling.unit {
-                None => Some(written.clone()),
-                Some(unit) => converted(&written, unit),
+            let si_value = match (spelling.unit, grammar.nested(si)) {
+                (None, None) => Some(written.clone()),
+                (None, Some(nested)) => nested.in_si(&written),
+                (Some(unit), _) => converted(&written, unit),
             };
             let Some(si_value) = si_value else {
                 meant.push(si.to_owned());
@@ -219,7 +220,10 @@ fn part_of<'t>(tree: &'t Tree, table: &SiTable, path: &Path) -> Option<(&'t str,
     for segment in segments {
         found = match (segment, &found.kind) {
             (Segment::Seq { index }, TreeKind::Array(items)) => items.get(*index)?,
-            (Segment::Map { key }, TreeKind::Table(_)) => found.get(key)?,
+            (Segment::Map { key }, TreeKind::Table(_)) => {
+                let other = || alternatives(key).find_map(|(name, _)| found.get(&name));
+                found.get(key).or_else(other)?
+            }
             _ => break,
         };
         whole = false;

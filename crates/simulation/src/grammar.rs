@@ -1,12 +1,13 @@
 //! The fields that an entry can have, and every unit they can be written in.
 
 use crate::effects::EffectParams;
+use crate::nested::Nested;
 use anergy_control::controllers::ControllerParams;
 use anergy_core::units::{Unit, alternatives, split_suffix};
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
 use schemars::{JsonSchema, Schema};
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::any::TypeId;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,6 +21,8 @@ pub struct Grammar {
     pub required: Vec<String>,
     /// Every name a field can be written with.
     spellings: HashMap<&'static str, &'static Spelling>,
+    /// Fields that hold fields.
+    nested: HashMap<String, Nested>,
 }
 
 /// A name that a field can be written with.
@@ -115,7 +118,29 @@ impl Grammar {
     fn of_schema(schema: &Schema) -> Self {
         let required = schema.get("required").and_then(Value::as_array);
         let required = required.into_iter().flatten().filter_map(Value::as_str);
-        Self::new(property_names(schema), required.map(str::to_owned).collect())
+        let properties = schema.get("properties").and_then(Value::as_object).cloned();
+        let definitions = schema.get("$defs").cloned().unwrap_or_default();
+        let required = required.map(str::to_owned).collect();
+        Self::of_properties(&properties.unwrap_or_default(), required, &definitions, 0)
+    }
+
+    /// The grammar of the properties of a schema.
+    pub(crate) fn of_properties(
+        properties: &Map<String, Value>,
+        required: Vec<String>,
+        definitions: &Value,
+        depth: usize,
+    ) -> Self {
+        let nested = properties.iter().filter_map(|(name, property)| {
+            Some((name.clone(), Nested::of_property(property, definitions, depth)?))
+        });
+        let nested = nested.collect();
+        Self { nested, ..Self::new(properties.keys().cloned().collect(), required) }
+    }
+
+    /// What a field holds that has fields of its own.
+    pub fn nested(&self, field: &str) -> Option<&Nested> {
+        self.nested.get(field)
     }
 
     fn new(fields: Vec<String>, required: Vec<String>) -> Self {
@@ -133,7 +158,7 @@ impl Grammar {
                 }
             }
         }
-        Self { fields, required, spellings }
+        Self { fields, required, spellings, nested: HashMap::new() }
     }
 
     /// The same fields, all of which may be absent.

@@ -50,6 +50,7 @@ pub mod grammar;
 pub mod isolate;
 pub mod model;
 pub mod model_file;
+pub mod nested;
 pub mod overlay;
 pub mod plain;
 pub mod plan;

@@ -256,7 +256,7 @@ impl StorageCoil {
             content_kg: volume_m3 * layers.density_kg_m3,
             m_flow_nominal_kg_s: positive("m_flow_nominal_kg_s", self.m_flow_nominal_kg_s)?,
             flow_exponent: whole("flow_exponent", self.flow_exponent)?,
-            difference_nominal_k: positive("difference_nominal_k", self.difference_nominal_k)?,
+            nominal_difference_k: positive("nominal_difference_k", self.nominal_difference_k)?,
             difference_exponent: whole("difference_exponent", self.difference_exponent)?,
         })
     }

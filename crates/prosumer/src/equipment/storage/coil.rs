@@ -46,7 +46,7 @@ pub struct StorageCoil {
     pub flow_exponent: f64,
     /// Temperature difference at which `u_w_m2_k` holds, K.
     #[serde(default = "default_difference")]
-    pub difference_nominal_k: f64,
+    pub nominal_difference_k: f64,
     /// Exponent of the difference of inlet and mean layer in the heat transfer coefficient.
     #[serde(default)]
     pub difference_exponent: f64,
@@ -75,7 +75,7 @@ pub(super) struct Coil {
     pub(super) content_kg: f64,
     pub(super) m_flow_nominal_kg_s: f64,
     pub(super) flow_exponent: f64,
-    pub(super) difference_nominal_k: f64,
+    pub(super) nominal_difference_k: f64,
     pub(super) difference_exponent: f64,
 }
 
@@ -99,7 +99,7 @@ impl Coil {
             ua *= (m_flow_kg_s.abs() / self.m_flow_nominal_kg_s).powf(self.flow_exponent);
         }
         if self.difference_exponent != 0.0 {
-            ua *= (difference_k.abs() / self.difference_nominal_k).powf(self.difference_exponent);
+            ua *= (difference_k.abs() / self.nominal_difference_k).powf(self.difference_exponent);
         }
         ua
     }
@@ -209,7 +209,7 @@ mod tests {
             content_kg,
             m_flow_nominal_kg_s: 0.1,
             flow_exponent: 0.0,
-            difference_nominal_k: 10.0,
+            nominal_difference_k: 10.0,
             difference_exponent: 0.0,
         }
     }
