@@ -263,18 +263,10 @@ fn entry(schema: &Schema, own: &[(&str, Value)]) -> Value {
     let known = object.get("properties").and_then(Value::as_object).cloned().unwrap_or_default();
     let mut required: Vec<Value> = Vec::new();
     for (name, property) in &known {
+        let mut property = property.clone();
+        nested_units(&mut property);
         properties.insert(name.clone(), property.clone());
-        for (alternative, unit) in alternatives(name) {
-            let mut converted = property.clone();
-            if let Some(object) = converted.as_object_mut() {
-                object.remove("default");
-                object.insert(
-                    "description".into(),
-                    json!(format!("{name} in {}", unit.suffix.replace('_', "/"))),
-                );
-            }
-            properties.insert(alternative, converted);
-        }
+        properties.extend(other_units(name, &property));
         let needed = object
             .get("required")
             .and_then(Value::as_array)
@@ -287,6 +279,43 @@ fn entry(schema: &Schema, own: &[(&str, Value)]) -> Value {
     object.insert("required".into(), Value::Array(required));
     object.insert("additionalProperties".into(), json!(false));
     value
+}
+
+/// A property in its other units.
+fn other_units(name: &str, property: &Value) -> Vec<(String, Value)> {
+    let other = alternatives(name).map(|(alternative, unit)| {
+        let mut converted = property.clone();
+        if let Some(object) = converted.as_object_mut() {
+            object.remove("default");
+            let description = format!("{name} in {}", unit.suffix.replace('_', "/"));
+            object.insert("description".into(), json!(description));
+        }
+        (alternative, converted)
+    });
+    other.collect()
+}
+
+/// All units of the fields of tables within a property.
+fn nested_units(property: &mut Value) {
+    match property {
+        Value::Object(object) => {
+            object.values_mut().for_each(nested_units);
+            let Some(known) = object.get("properties").and_then(Value::as_object).cloned() else {
+                return;
+            };
+            let mut all = known.clone();
+            all.extend(known.iter().flat_map(|(name, property)| other_units(name, property)));
+            object.insert("properties".into(), Value::Object(all));
+            if let Some(required) = object.get_mut("required").and_then(Value::as_array_mut) {
+                // A field with units has alternatives.
+                required.retain(|name| {
+                    name.as_str().is_none_or(|name| alternatives(name).next().is_none())
+                });
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(nested_units),
+        _ => {}
+    }
 }
 
 /// Replaces references to local definitions by the definitions.
