@@ -134,6 +134,18 @@ fn ground_that_follows_the_year_and_soil_that_stores() {
     assert_no_allocation(&mut simulation(&model(text)), &[], (50, 200), 600);
 }
 
+#[test]
+fn weather_that_a_plant_follows() {
+    let text = std::fs::read_to_string(workspace().join("examples/weather/model.toml")).unwrap();
+    let folder = workspace().join("examples/weather");
+    let model = Model::from_toml(&text, &folder).unwrap();
+    // Across hours, days and the boundaries of its steps.
+    for (step_s, warm_up) in [(60, 100), (300, 30), (3600, 3)] {
+        let mut simulation = simulation(&model);
+        assert_no_allocation(&mut simulation, &[], (warm_up, 40), step_s);
+    }
+}
+
 /// A pump, and between supply and return: a branch with a load and a self-acting controller over it, a valve
 /// left free for the flow of that branch's neighbour, and a pulsing three-way valve.
 const ACTING: &str = r#"

@@ -71,12 +71,16 @@ impl Location {
         let sin_declination = obliquity.sin() * ecliptic.sin();
         let cos_declination = (1.0 - sin_declination * sin_declination).sqrt();
         let (sin_latitude, cos_latitude) = self.latitude_rad.sin_cos();
+        let (a, b) = (sin_latitude * sin_declination, cos_latitude * cos_declination);
+        // At a pole b is nothing.
+        let polar = if a > 0.0 { PI } else { 0.0 };
         SunPath {
             sin_latitude,
             cos_latitude,
             sin_declination,
             cos_declination,
             hour_angle_rad: (hour_angle + PI).rem_euclid(TAU) - PI,
+            dawn_rad: if b <= a.abs() { polar } else { (-a / b).acos() },
         }
     }
 }
@@ -90,6 +94,8 @@ pub struct SunPath {
     cos_declination: f64,
     /// At the moment; 0 is noon.
     hour_angle_rad: f64,
+    /// Of sunset: 0 in the polar night, pi in the polar day.
+    dawn_rad: f64,
 }
 
 impl SunPath {
@@ -110,10 +116,11 @@ impl SunPath {
 
     /// Integral of `max(0, sin h)` over a span, s: what a horizontal plane outside the atmosphere gets.
     pub fn sine_s(&self, from_s: f64, to_s: f64) -> f64 {
-        let (a, b) = self.coefficients();
-        let dawn = self.dawn_rad();
+        let (a, b) =
+            (self.sin_latitude * self.sin_declination, self.cos_latitude * self.cos_declination);
+        let dawn = self.dawn_rad;
         let until = |after_s: f64| {
-            let (turns, within) = self.within_day(after_s, dawn);
+            let (turns, within) = self.within_day(after_s);
             let day = |angle: f64| a * angle + b * angle.sin();
             2.0 * turns * day(dawn) + day(within)
         };
@@ -122,9 +129,9 @@ impl SunPath {
 
     /// How long the sun is up within a span, s.
     pub fn sunshine_s(&self, from_s: f64, to_s: f64) -> f64 {
-        let dawn = self.dawn_rad();
+        let dawn = self.dawn_rad;
         let until = |after_s: f64| {
-            let (turns, within) = self.within_day(after_s, dawn);
+            let (turns, within) = self.within_day(after_s);
             2.0 * turns * dawn + within
         };
         ((until(to_s) - until(from_s)) / TURN_RAD_S).max(0.0)
@@ -133,7 +140,7 @@ impl SunPath {
     /// The middle of the part of a span in which the sun is up, or of the whole span where it is not; for spans
     /// of less than the night.
     pub fn middle_s(&self, from_s: f64, to_s: f64) -> f64 {
-        let (dawn, middle_s) = (self.dawn_rad(), 0.5 * (from_s + to_s));
+        let (dawn, middle_s) = (self.dawn_rad, 0.5 * (from_s + to_s));
         let angle = |after_s: f64| self.hour_angle_rad + TURN_RAD_S * after_s;
         // The noon that is nearest.
         let noon = (angle(middle_s) / TAU).round() * TAU;
@@ -142,22 +149,11 @@ impl SunPath {
         if from < to { (0.5 * (from + to) - self.hour_angle_rad) / TURN_RAD_S } else { middle_s }
     }
 
-    fn coefficients(&self) -> (f64, f64) {
-        (self.sin_latitude * self.sin_declination, self.cos_latitude * self.cos_declination)
-    }
-
-    /// Hour angle of sunset: 0 in the polar night, pi in the polar day.
-    fn dawn_rad(&self) -> f64 {
-        let (a, b) = self.coefficients();
-        // At a pole b is nothing.
-        if b <= a.abs() { if a > 0.0 { PI } else { 0.0 } } else { (-a / b).acos() }
-    }
-
     /// Whole turns since noon, and the hour angle within the day, kept between sunrise and sunset.
-    fn within_day(&self, after_s: f64, dawn: f64) -> (f64, f64) {
+    fn within_day(&self, after_s: f64) -> (f64, f64) {
         let angle = self.hour_angle_rad + TURN_RAD_S * after_s;
         let turns = (angle / TAU).round();
-        (turns, (angle - turns * TAU).clamp(-dawn, dawn))
+        (turns, (angle - turns * TAU).clamp(-self.dawn_rad, self.dawn_rad))
     }
 }
 

@@ -119,6 +119,7 @@ pub fn run_error(py: Python<'_>, error: &SimulationError, text: &str, origin: &O
                 value.setattr("component", valve)
             })
         }
+        E::WeatherEnds { time } => failed(time, None),
         E::Unbalanced { time, node, .. } => failed(time, Some(node)),
         E::NotFinite { time, component } | E::Temperature { time, component, .. } => {
             failed(time, Some(component))

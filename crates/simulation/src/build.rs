@@ -13,6 +13,7 @@ mod regulators;
 mod signals;
 mod stations;
 mod units;
+mod weather;
 
 pub(crate) use network::pipe_temperatures;
 
@@ -81,6 +82,7 @@ impl Builder<'_> {
             let component = doubled.name.rsplit_once('.').map_or("", |(component, _)| component);
             let what = place.entry_or(component);
             let hint = match component {
+                "weather" => "`weather` is what is outdoors: give this another id",
                 "ground" => "`ground` is what surrounds the pipes: give this another id",
                 _ => "something else has the same name: give one of the two another id",
             };
@@ -159,6 +161,7 @@ impl Builder<'_> {
         let mut signals = SignalTable::default();
         let mut writers: HashMap<SignalId, Writer> = HashMap::new();
         let (ground, by_depth, seasonal_ground) = self.ground_signals(&mut signals, &mut writers);
+        let mut weather = self.weather_signals(&mut signals);
         let node_inputs = self.node_signals(&mut signals);
         let mut commands = if whole {
             self.edge_signals(&network, &mut signals)
@@ -228,6 +231,7 @@ impl Builder<'_> {
             node_inputs,
             ground,
             seasonal_ground,
+            weather: None,
             surroundings,
             initial,
             initial_water: self.initial_water(),
@@ -261,6 +265,11 @@ impl Builder<'_> {
         }
         self.sensors(&mut plan);
         self.controllers(&mut plan, &set_points, &mut writers);
+        if let Some(weather) = &mut weather {
+            weather.leave(|signal| writers.contains_key(&signal));
+        }
+        self.check_sun(&plan, &writers);
+        plan.weather = weather;
         (plan.channels, plan.sources) = (Vec::new(), Vec::new());
         plan.follows = self.follows(&plan.units, &plan.signals, &writers);
         self.targets(&mut plan);

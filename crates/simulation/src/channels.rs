@@ -5,6 +5,7 @@ mod units;
 use crate::plan::Plan;
 use crate::simulation::{Said, stored_j};
 use crate::state::State;
+use crate::weather;
 use anergy_core::ids::SignalId;
 use anergy_core::port::Port;
 use anergy_core::recorder::{Channel, ChannelGroup};
@@ -173,7 +174,9 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
     for (i, spec) in plan.signals.specs().iter().enumerate() {
         let (component, quantity) = spec.name.rsplit_once('.').unwrap_or(("", &spec.name));
         let unit = udunits(spec.unit);
-        let quantity = format!("{quantity}_command");
+        // What the weather is, is no command.
+        let end = if weather::is_signal(&spec.name) { "" } else { "_command" };
+        let quantity = format!("{quantity}{end}");
         let source = Source::Signal(SignalId::from_index(i));
         list.add(ChannelGroup::Control, component, &quantity, unit, source);
     }
@@ -299,6 +302,9 @@ fn udunits(suffix: &str) -> &'static str {
         "pa" => "Pa",
         "k" => "K",
         "w" => "W",
+        "w_m2" => "W m-2",
+        "m_s" => "m s-1",
+        "rad" => "rad",
         _ => "1",
     }
 }

@@ -108,6 +108,12 @@ pub enum RunError {
         /// Its highest temperature, degC.
         max_degc: f64,
     },
+    /// The run goes on after its weather.
+    #[error("at {time}: the file of [weather] ends here")]
+    WeatherEnds {
+        /// Simulated time.
+        time: String,
+    },
     /// A linear system is singular.
     #[error("at {time}: {source}")]
     Singular {

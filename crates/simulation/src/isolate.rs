@@ -148,7 +148,7 @@ impl Model {
             .chain(model.units.iter().map(|unit| unit.id.to_string()))
             .chain(model.circuits.iter().map(|circuit| circuit.id.to_string()))
             .chain(model.interfaces.iter().map(|interface| interface.entry.id.clone()))
-            .chain(std::iter::once("ground".to_owned()))
+            .chain(["ground", "weather"].map(str::to_owned))
             .collect();
         for point in &mut model.worst_points {
             let pairs = &mut point.entry.between;

@@ -61,4 +61,5 @@ pub mod state;
 pub mod steady;
 pub mod table;
 mod temperatures;
+pub mod weather;
 mod wording;

@@ -11,9 +11,10 @@ use crate::diagnostic::Diagnostics;
 use crate::effect::EffectSpec;
 use crate::model_file::{
     GroundEntry, InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry,
-    RunEntry, WorstPointEntry,
+    RunEntry, WeatherEntry, WorstPointEntry,
 };
 use crate::table::Tables;
+use crate::weather::Records;
 use anergy_control::controllers::{ControllerParams, ports};
 use anergy_control::sensor::SensorEntry;
 use anergy_core::medium::Medium;
@@ -171,6 +172,17 @@ pub struct ReferenceSpec {
     pub place: Place,
 }
 
+/// The weather.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeatherSpec {
+    /// Its fields.
+    pub entry: WeatherEntry,
+    /// Its records; absent where it is constant.
+    pub records: Option<Arc<Records>>,
+    /// Where it stands.
+    pub place: Place,
+}
+
 /// A whole model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
@@ -196,6 +208,8 @@ pub struct Model {
     pub ground: GroundEntry,
     /// Where it stands.
     pub ground_place: Place,
+    /// The weather, where there is one.
+    pub weather: Option<WeatherSpec>,
     /// Nodes.
     pub nodes: Vec<NodeSpec>,
     /// Edges.

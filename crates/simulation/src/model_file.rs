@@ -19,6 +19,7 @@ pub mod series;
 mod station_parts;
 mod tables;
 mod three_way_valve;
+mod weather;
 
 pub use balancing_unit::BalancingUnitEntry;
 pub use duration::{Duration, StepEntry};
@@ -30,6 +31,7 @@ pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use prosumer_station::{Directions, Extraction, FlowControl, ProsumerEntry};
 pub use tables::NetworkEntry;
 pub use three_way_valve::{ThreeWayMode, ThreeWayValveEntry};
+pub use weather::{Means, WeatherEntry, WeatherKind};
 
 use anergy_core::clock::Time;
 use schemars::JsonSchema;

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostics;
 use crate::document::Span;
 use crate::document::to_toml;
 use crate::model::{Model, Place};
-use crate::model_file::{FluidEntry, GroundEntry};
+use crate::model_file::{FluidEntry, GroundEntry, WeatherEntry};
 use anergy_network::elements::ElementParams;
 use serde_json::{Map, Value, json};
 
@@ -28,6 +28,9 @@ impl Model {
         file.insert("run".into(), without_nulls(json!(self.run)));
         file.insert("fluid".into(), FluidEntry::of(&self.medium, self.follow_temperature));
         file.insert("ground".into(), self.plain_ground());
+        if let Some(weather) = &self.weather {
+            file.insert("weather".into(), plain_weather(&weather.entry));
+        }
         let mut section = |name: &str, entries: Vec<Value>| {
             if !entries.is_empty() {
                 file.insert(name.into(), entries.into_iter().map(without_nulls).collect());
@@ -154,6 +157,15 @@ impl Model {
         for default in &mut defaults {
             default.source = GroundEntry::source(&default.field);
         }
+        if let Some(weather) = &self.weather {
+            let (schema, values) =
+                (schemars::schema_for!(WeatherEntry), plain_weather(&weather.entry));
+            let first = defaults.len();
+            collect(&mut defaults, "weather", &values, Some(schema), &weather.place);
+            let mut own = defaults.split_off(first);
+            own.retain(|default| weather.entry.has(&default.field) && !default.value.is_null());
+            defaults.extend(own);
+        }
         for edge in &self.edges {
             let schema = ElementParams::schema(edge.params.kind());
             let first = defaults.len();
@@ -188,6 +200,15 @@ impl Model {
         }
         defaults
     }
+}
+
+/// The weather, with the fields of its kind.
+fn plain_weather(entry: &WeatherEntry) -> Value {
+    let mut weather = json!(entry);
+    if let Some(fields) = weather.as_object_mut() {
+        fields.retain(|field, _| entry.has(field));
+    }
+    weather
 }
 
 /// A value that the model file did not give.

@@ -8,6 +8,7 @@ use crate::channels::{self, Source};
 use crate::drivers::Driver;
 use crate::model_file::StepEntry;
 use crate::state::State;
+use crate::weather::Weather;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::recorder::{Channel, MapEdge, MapNode, NetworkMap};
@@ -224,6 +225,8 @@ pub struct Plan {
     pub(crate) node_inputs: Vec<NodeInputs>,
     pub(crate) ground: SignalId,
     pub(crate) seasonal_ground: Option<SeasonalGround>,
+    /// What the signals of the weather are over time.
+    pub(crate) weather: Option<Weather>,
     /// Signal with the temperature around each edge.
     pub(crate) surroundings: Vec<(SignalId, f64)>,
     /// The state at the start, but for the water.

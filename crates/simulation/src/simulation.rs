@@ -19,6 +19,7 @@ use crate::automatic_step::{AutomaticStep, Limit};
 use crate::error::RunError;
 use crate::plan::Plan;
 use crate::state::State;
+use crate::weather::Interval;
 use anergy_core::clock::Time;
 use anergy_core::error::FactorError;
 use anergy_core::ids::SignalId;
@@ -55,6 +56,8 @@ pub struct Simulation {
     holds: Vec<Hold>,
     /// Where each driver was found last; results do not depend on it.
     near: Vec<usize>,
+    /// The interval of the weather that was looked at last; results do not depend on it.
+    outdoors: Option<Interval>,
     desk: Desk,
     stepper: Stepper,
 }
@@ -78,6 +81,7 @@ impl Simulation {
             state,
             holds: vec![Hold::Held; plan.prescriptions.len()],
             near: vec![0; plan.drivers.len()],
+            outdoors: None,
             desk: Desk::new(&plan),
             stepper: Stepper::new(&plan),
             plan,
@@ -103,6 +107,7 @@ impl Simulation {
             self.state.signals[driver.signal.index()] = driver.value_at(Time::ZERO);
         }
         self.follow_seasons(Time::ZERO);
+        self.follow_weather(Time::ZERO)?;
         self.follow_signals();
         self.request_units(0.0);
         self.drive_stations();
@@ -163,10 +168,10 @@ impl Simulation {
 
     /// Inputs, actuators and flows of a step that ends at `latest`, or where a pulsing valve ends it.
     fn flow_until(&mut self, now: Time, latest: Time) -> Result<Time, RunError> {
-        self.drive_inputs(latest);
+        self.drive_inputs(latest)?;
         let end = self.begin_pulses(now, latest);
         if end < latest {
-            self.drive_inputs(end);
+            self.drive_inputs(end)?;
         }
         self.request_units((end - now).as_s());
         self.drive_stations();
@@ -176,15 +181,17 @@ impl Simulation {
         Ok(end)
     }
 
-    /// Schedules and series write their signals.
-    fn drive_inputs(&mut self, end: Time) {
+    /// Schedules and series write their signals, after ground and weather.
+    fn drive_inputs(&mut self, end: Time) -> Result<(), RunError> {
         self.follow_seasons(end);
+        self.follow_weather(end)?;
         for (driver, near) in self.plan.drivers.iter().zip(&self.near) {
             if !self.state.taken_over[driver.signal.index()] {
                 self.state.signals[driver.signal.index()] = driver.value_until(end, *near);
             }
         }
         self.follow_signals();
+        Ok(())
     }
 
     /// Inputs of units that nothing else drives follow another signal.
@@ -194,6 +201,21 @@ impl Simulation {
                 self.state.signals[to.index()] = self.state.signals[from.index()];
             }
         }
+    }
+
+    /// The weather of a step that ends at a time.
+    fn follow_weather(&mut self, end: Time) -> Result<(), RunError> {
+        let Some(weather) = &self.plan.weather else { return Ok(()) };
+        let step = (self.state.time, end);
+        let values = weather
+            .values(step, &mut self.outdoors)
+            .ok_or_else(|| RunError::WeatherEnds { time: self.state.time.to_string() })?;
+        for (signal, value) in weather.signals.iter().zip(values) {
+            if let Some(signal) = signal.filter(|signal| !self.state.taken_over[signal.index()]) {
+                self.state.signals[signal.index()] = value;
+            }
+        }
+        Ok(())
     }
 
     /// The ground follows the year: evaluated once per step at its end, at each depth.

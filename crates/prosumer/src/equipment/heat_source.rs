@@ -113,11 +113,13 @@ impl ThermalUnit for HeatSource {
     }
 
     fn inputs(&self) -> Vec<UnitInput> {
-        let (name, initial) = match &self.supply {
-            Supply::Fixed(t_k) => ("supply_k", *t_k),
-            Supply::Curve { outdoor_k, .. } => ("outdoor_k", *outdoor_k),
+        let (name, initial, follows) = match &self.supply {
+            Supply::Fixed(t_k) => ("supply_k", *t_k, None),
+            Supply::Curve { outdoor_k, .. } => {
+                ("outdoor_k", *outdoor_k, Some("weather.t_outdoor_k"))
+            }
         };
-        vec![UnitInput { name, unit: "k", initial, min: 0.0, max: f64::INFINITY, follows: None }]
+        vec![UnitInput { name, unit: "k", initial, min: 0.0, max: f64::INFINITY, follows }]
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {

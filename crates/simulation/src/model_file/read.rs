@@ -16,6 +16,7 @@ mod sensors;
 mod station_types;
 mod three_way_valves;
 mod units;
+mod weather;
 
 use self::pipe_types::PipeTypes;
 use self::sections::LISTS;
@@ -164,6 +165,7 @@ impl ModelReader<'_> {
         if let Some((ground, place)) = &ground {
             self.check_ground(ground, place, run.as_ref().map(|(run, _)| run));
         }
+        let weather = self.weather(run.as_ref().map(|(run, _)| run), start);
         let mut interfaces = Vec::new();
         self.network(text);
         self.station_types();
@@ -226,6 +228,7 @@ impl ModelReader<'_> {
             follow_temperature: fluid?.0.follow_temperature,
             ground: ground.as_ref()?.0.clone(),
             ground_place: ground?.1,
+            weather,
             nodes,
             edges,
         };

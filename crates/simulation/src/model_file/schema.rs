@@ -65,6 +65,7 @@ pub fn schema() -> Value {
         "run": entry(&schema_for!(RunEntry), &[]),
         "fluid": entry(&schema_for!(FluidEntry), &[]),
         "ground": entry(&schema_for!(GroundEntry), &[]),
+        "weather": entry(&schema_for!(WeatherEntry), &[]),
         "pipe_type": { "type": "object", "additionalProperties": pipe_type },
         "heat_pump_map": {
             "type": "object",

@@ -7,6 +7,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "run",
     "fluid",
     "ground",
+    "weather",
     "pipe_type",
     "heat_pump_map",
     "network",
