@@ -141,6 +141,26 @@ fn units_follow_and_what_drives_a_signal_wins() {
 }
 
 #[test]
+fn a_pipe_above_the_ground_lies_in_the_air_of_the_weather() {
+    let lost_w = |t_degc: f64| {
+        let grid = "[[node]]\nid = \"in\"\nkind = \"source\"\nm_flow_kg_s = 0.5\ntemperature_degc = 60\n\
+            [[node]]\nid = \"out\"\nkind = \"pressure_boundary\"\npressure_bar = 1\n[[edge]]\nid = \"pipe\"\n\
+            kind = \"pipe\"\nfrom = \"in\"\nto = \"out\"\nlength_m = 10\ninner_diameter_mm = 28.5\n\
+            outer_diameter_mm = 33.7\ncasing_diameter_mm = 110\nlaying = \"above_ground\"\n";
+        let text = format!(
+            "format = 1\n[weather]\nkind = \"constant\"\nt_outdoor_degc = {t_degc}\n{grid}"
+        );
+        let model = read(&text, Path::new("."));
+        let mut simulation = started(&model);
+        steady::settle(&mut simulation).unwrap();
+        get(&simulation, "pipe.q_loss_w")
+    };
+    // In proportion to the difference from some 60 degC: 60 K and 40 K (the air film is that of 10 degC).
+    assert!((lost_w(0.0) / lost_w(20.0) - 1.5).abs() < 2e-3, "{} {}", lost_w(0.0), lost_w(20.0));
+    assert!(lost_w(0.0) > 50.0);
+}
+
+#[test]
 fn controllers_measure_the_weather() {
     // A two-point controller on the outdoor temperature: the pump runs below 15 degC.
     let control = "\n[[controller]]\nkind = \"hysteresis\"\nmeasures = \"weather.t_outdoor_k\"\n\

@@ -33,11 +33,17 @@ impl Builder<'_> {
                 Ok(alone) => resistances[i] = alone.map(|alone| alone.total_k_m_w()),
                 Err(error) => self.refuse_pipe(spec, &error),
             }
-            if pipe.laying == Some(Laying::AboveGround) && pipe.surroundings_k.is_none() {
+            let outdoors = self.model.weather.is_some();
+            if pipe.laying == Some(Laying::AboveGround)
+                && pipe.surroundings_k.is_none()
+                && !outdoors
+            {
                 let what = format!("edge \"{}\" (pipe)", spec.id);
                 let message = "a pipe above the ground needs surroundings_k, the air around it";
                 let problem = refused(&what, &spec.place, Some("laying"), message);
-                self.problems.push(problem.with_hint("the signal has the same name"));
+                let hint =
+                    "the signal has the same name; with a [weather] it is that of the air outdoors";
+                self.problems.push(problem.with_hint(hint));
             }
         }
         for (i, j, reversed) in self.companions(edge_ids) {
@@ -197,11 +203,15 @@ impl Builder<'_> {
         ground: SignalId,
         by_depth: &BTreeMap<u64, SignalId>,
     ) -> Vec<(SignalId, f64)> {
+        let outdoors = signals.find("weather.t_outdoor_k");
         self.model
             .edges
             .iter()
             .map(|spec| {
                 let ElementParams::Pipe(pipe) = &spec.params else { return (ground, 0.0) };
+                if let (Some(Laying::AboveGround), None) = (pipe.laying, pipe.surroundings_k) {
+                    return (outdoors.unwrap_or(ground), pipe.surroundings_difference_k);
+                }
                 let around = match (pipe.surroundings_k, pipe.depth_m) {
                     (Some(t_k), _) => {
                         let name = format!("{}.surroundings_k", spec.id);
