@@ -261,6 +261,10 @@ fn the_example_runs_its_week() {
         let curve_k = 348.15 - 15.0 / 25.0 * (t_degc + 10.0).clamp(0.0, 25.0);
         assert!((supply_k - curve_k).abs() < 1e-9, "{hour} h: {supply_k} {curve_k}");
     }
+    // The ground of the weather is that of the year: 1 m deep on 22 January some 4 degC.
+    let ground_k = get(&simulation, "weather.t_ground_k");
+    assert!((ground_k - 277.15).abs() < 1.0, "{ground_k}");
+    assert_eq!(ground_k, get(&simulation, "ground.temperature_k_command"));
     // January: around -0.5 degC, with 4 K up and down in a day and 3.5 K of weather; some 1 kWh/m2 of sun a day.
     assert!((-8.0..7.0).contains(&sum), "{sum}");
     assert!(warmest - coldest > 8.0 && warmest < 15.0 && coldest > -20.0, "{coldest} {warmest}");

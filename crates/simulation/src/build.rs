@@ -161,7 +161,7 @@ impl Builder<'_> {
         let mut signals = SignalTable::default();
         let mut writers: HashMap<SignalId, Writer> = HashMap::new();
         let (ground, by_depth, seasonal_ground) = self.ground_signals(&mut signals, &mut writers);
-        let mut weather = self.weather_signals(&mut signals);
+        let mut weather = self.weather_signals(&mut signals, ground);
         let node_inputs = self.node_signals(&mut signals);
         let mut commands = if whole {
             self.edge_signals(&network, &mut signals)
@@ -271,7 +271,8 @@ impl Builder<'_> {
         self.check_sun(&plan, &writers);
         plan.weather = weather;
         (plan.channels, plan.sources) = (Vec::new(), Vec::new());
-        plan.follows = self.follows(&plan.units, &plan.signals, &writers);
+        plan.follows.extend(self.weather_ground(&plan, &writers));
+        plan.follows.extend(self.follows(&plan.units, &plan.signals, &writers));
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];

@@ -46,9 +46,13 @@ pub(crate) const SIGNALS: [(&str, &str); 8] = [
     ("weather.sun_azimuth_rad", "rad"),
 ];
 
+/// The temperature of the ground, for units that know the weather only.
+pub(crate) const T_GROUND: &str = "weather.t_ground_k";
+
 /// Whether a signal is one of the weather.
 pub(crate) fn is_signal(name: &str) -> bool {
-    name.starts_with("weather.") && SIGNALS.iter().any(|(signal, _)| *signal == name)
+    let is = || name == T_GROUND || SIGNALS.iter().any(|(signal, _)| *signal == name);
+    name.starts_with("weather.") && is()
 }
 
 /// The first of those about the sun.

@@ -4,7 +4,7 @@ use super::Builder;
 use super::signals::{Writer, free_signal, temperature_signal};
 use crate::plan::Plan;
 use crate::temperatures::SURROUNDINGS;
-use crate::weather::{SIGNALS, SUN, Weather};
+use crate::weather::{SIGNALS, SUN, T_GROUND, Weather};
 use crate::wording::refused;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
@@ -14,7 +14,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 impl Builder<'_> {
     /// Adds the signals that the weather has; what drives them over time.
-    pub(super) fn weather_signals(&mut self, signals: &mut SignalTable) -> Option<Weather> {
+    pub(super) fn weather_signals(
+        &mut self,
+        signals: &mut SignalTable,
+        ground: SignalId,
+    ) -> Option<Weather> {
         let spec = self.model.weather.as_ref()?;
         let mut weather = spec.records.clone().map(|records| Weather {
             records,
@@ -48,10 +52,23 @@ impl Builder<'_> {
             };
             ids[i] = Some(self.add_signal(signals, signal, &spec.place));
         }
+        let t_ground_k = signals.spec(ground).initial;
+        let signal = temperature_signal(T_GROUND, t_ground_k, &SURROUNDINGS);
+        self.add_signal(signals, signal, &spec.place);
         if let Some(weather) = &mut weather {
             weather.signals = ids;
         }
         weather
+    }
+
+    /// The ground of the weather is that of `[ground]`, where nothing else drives it: to, from.
+    pub(super) fn weather_ground(
+        &self,
+        plan: &Plan,
+        writers: &HashMap<SignalId, Writer>,
+    ) -> Option<(SignalId, SignalId)> {
+        let signal = plan.signals.find(T_GROUND)?;
+        (!writers.contains_key(&signal)).then_some((signal, plan.ground))
     }
 
     /// A unit that follows the sun of a weather without sun would stand in the dark without a word.
