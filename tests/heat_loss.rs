@@ -509,6 +509,38 @@ mod generations {
     }
 }
 
+/// Numbers of `examples/soil-study`: what a street of `examples/grids` loses in a year, MWh.
+#[test]
+fn soil_and_insulation_over_a_year() {
+    let dir = workspace().join("examples/grids");
+    let year_mwh = |name: &str, soil: (f64, f64), pipe: (&str, &str)| {
+        let text = std::fs::read_to_string(dir.join(format!("{name}.toml"))).unwrap();
+        let text = text.replace(pipe.0, pipe.1);
+        let mut model = Model::from_toml(&text, &dir).unwrap();
+        (model.ground.conductivity_w_m_k, model.ground.diffusivity_m2_s) = soil;
+        let months = (1..=12).map(|month| {
+            model.run.start = Some(format!("2023-{month:02}-15T12:00:00+01:00"));
+            let mut run = simulation(&model);
+            steady::settle(&mut run).unwrap();
+            get(&run, "network.loss_w")
+        });
+        months.sum::<f64>() / 12.0 * 8760.0 / 1e6
+    };
+    let (dry, moist, wet) = ((0.5, 3.5e-7), (1.6, 6.2e-7), (2.5, 8.5e-7));
+    for (name, soil, pipe, expected_mwh) in [
+        ("3gdh", dry, ("", ""), 33.89),
+        ("3gdh", moist, ("", ""), 40.89),
+        ("3gdh", wet, ("", ""), 42.33),
+        ("3gdh", moist, ("series 1", "series 3"), 32.18),
+        ("5gdhc", dry, ("depth_m = 1.2", "depth_m = 2"), 19.35),
+        ("5gdhc", moist, ("", ""), 63.08),
+        ("5gdhc", wet, ("depth_m = 1.2", "depth_m = 0.8"), 97.66),
+    ] {
+        let found_mwh = year_mwh(name, soil, pipe);
+        assert!((found_mwh - expected_mwh).abs() < 0.02, "{name} {soil:?}: {found_mwh}");
+    }
+}
+
 #[test]
 fn what_one_line_loses_to_the_other_stays_in_the_water() {
     for pipe in [
