@@ -78,6 +78,9 @@ enum Command {
         /// List the input signals that schedules, series and controllers can drive
         #[arg(long)]
         signals: bool,
+        /// Show the weather: a year from the start of the run, its months and its type days
+        #[arg(long)]
+        weather: bool,
     },
     /// Print the JSON Schema of the model file
     Schema,
@@ -136,8 +139,9 @@ fn main() -> ExitCode {
         Command::Stability { model, json, advise } => {
             commands::stability::stability(&model, json.as_deref(), advise)
         }
-        Command::Check { model, expand, explain_defaults, signals } => {
-            commands::check::check(&model, expand, explain_defaults, signals)
+        Command::Check { model, expand, explain_defaults, signals, weather } => {
+            let detail = commands::check::Detail { expand, explain_defaults, signals, weather };
+            commands::check::check(&model, detail)
         }
         Command::Schema => commands::schema::schema(),
         Command::Import { format } => match format {

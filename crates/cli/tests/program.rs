@@ -115,6 +115,37 @@ fn check_expands_explains_and_lists() {
 }
 
 #[test]
+fn check_shows_the_weather() {
+    let weather = MODEL.replacen(
+        "[run]",
+        "[weather]\nkind = \"synthetic\"\nnoise_difference_k = 0\n[run]\n\
+         start = \"2024-01-01T00:00:00+01:00\"",
+        1,
+    );
+    let dir = with_model(&weather);
+    let shown = text(&anergy(&["check", "model.toml", "--weather"], dir.path()).stdout);
+    let line = |name: &str| {
+        let line = shown.lines().find(|line| line.contains(name));
+        line.unwrap_or_else(|| panic!("{name}:\n{shown}")).to_owned()
+    };
+    // The year without noise has 9.5 degC; 365 days, of which 12 months and 12 types.
+    assert!(line("all").contains("365") && line("all").contains("9.5"), "{shown}");
+    assert!(line("2024-02").contains("29"), "{shown}");
+    let count = |name: &str| {
+        let words: Vec<String> = line(name).split_whitespace().map(str::to_owned).collect();
+        words.iter().rev().nth(4).unwrap().parse::<u32>().unwrap()
+    };
+    let kinds = ["winter", "transition", "summer"].into_iter().flat_map(|season| {
+        ["workday, sunny", "workday, cloudy", "Sunday, sunny", "Sunday, cloudy"]
+            .map(|kind| count(&format!("{season}, {kind}")))
+    });
+    assert_eq!(kinds.sum::<u32>(), 365, "{shown}");
+    let without = with_model(MODEL);
+    let shown = text(&anergy(&["check", "model.toml", "--weather"], without.path()).stdout);
+    assert!(shown.contains("no weather"), "{shown}");
+}
+
+#[test]
 fn the_schema_is_json_and_knows_every_section() {
     let output = anergy(&["schema"], Path::new("."));
     let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

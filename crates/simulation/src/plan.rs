@@ -316,6 +316,11 @@ impl Plan {
         self.record
     }
 
+    /// Calendar time of the start, ns since 1970; 0 without one.
+    pub fn start_unix_ns(&self) -> i64 {
+        self.start_unix_ns
+    }
+
     /// End of the run.
     pub fn until(&self) -> Time {
         self.until

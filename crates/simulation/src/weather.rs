@@ -17,6 +17,7 @@
 //! **Numerics** closed form, one or two pairs of sine and cosine in a step. **Sources** `michalsky1988`.
 
 mod calendar;
+mod days;
 mod epw;
 mod irradiance;
 mod records;
@@ -24,6 +25,7 @@ mod synthetic;
 mod table;
 
 pub(crate) use calendar::Calendar;
+pub use days::{Day, Season, TypeDay};
 pub(crate) use epw::read as read_epw;
 pub(crate) use records::PointAt;
 pub use records::Records;
