@@ -66,6 +66,13 @@ pub enum Outlet {
         /// Temperature at which it leaves through port b, where positive flow leaves, K.
         b_k: f64,
     },
+    /// It exchanges heat with another stream, `w_k (other - T_in)` at any flow that can carry it.
+    Exchange {
+        /// Heat per difference of the two inlet temperatures, W/K.
+        w_k: f64,
+        /// Inlet temperature of the other stream, K.
+        other_k: f64,
+    },
     /// It approaches a temperature: it leaves with `constant_k + of_inlet T_in`.
     Linear {
         /// What is added, K.
@@ -80,10 +87,20 @@ impl Outlet {
     /// temperature of the water.
     pub fn heat_flow_w(&self) -> Option<f64> {
         match *self {
-            Self::Temperature(_) | Self::Ends { .. } | Self::Linear { .. } => None,
+            Self::Temperature(_)
+            | Self::Ends { .. }
+            | Self::Exchange { .. }
+            | Self::Linear { .. } => None,
             Self::HeatFlow(q_w) => Some(q_w),
             Self::Cooled { wanted_w, .. } => Some(-wanted_w),
         }
+    }
+
+    /// Constant part and share of the inlet temperature with which a flow of this capacity, W/K, leaves an exchange.
+    #[inline]
+    pub fn of_exchange(w_k: f64, other_k: f64, capacity_w_k: f64) -> (f64, f64) {
+        let share = if capacity_w_k > w_k { w_k / capacity_w_k } else { 1.0 };
+        (share * other_k, 1.0 - share)
     }
 
     /// The temperature at which a flow leaves where it does not depend on the inlet, K.

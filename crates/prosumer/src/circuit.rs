@@ -61,6 +61,7 @@ fn relation(outlet: &Outlet, limit: Limit, capacity_w_k: f64) -> (f64, f64) {
         Outlet::Temperature(t_k) | Outlet::Ends { b_k: t_k, .. } => (t_k, 0.0),
         Outlet::HeatFlow(q_w) => warmed(q_w),
         Outlet::Linear { constant_k, of_inlet } => (constant_k, of_inlet),
+        Outlet::Exchange { w_k, other_k } => Outlet::of_exchange(w_k, other_k, capacity_w_k),
         Outlet::Cooled { wanted_w, coldest_k } => match limit {
             Limit::None => warmed(-wanted_w),
             Limit::Coldest => (coldest_k, 0.0),

@@ -28,8 +28,7 @@ pub fn outlet(ua_w_k: f64, a_w_k: f64, b_w_k: f64, b_in_k: f64) -> Outlet {
     if a_w_k <= 0.0 {
         return Outlet::HeatFlow(0.0);
     }
-    let share = (conductance_w_k(ua_w_k, a_w_k, b_w_k) / a_w_k).min(1.0);
-    Outlet::Linear { constant_k: share * b_in_k, of_inlet: 1.0 - share }
+    Outlet::Exchange { w_k: conductance_w_k(ua_w_k, a_w_k, b_w_k), other_k: b_in_k }
 }
 
 /// Capacity flow of the first stream, W/K, where the other has `b_w_k` and the inlets differ by `inlets_k`.
@@ -62,9 +61,10 @@ mod tests {
     fn equal_streams() {
         // NTU = 3000/1500 = 2: eps = 2/3; 20 K between the inlets: 20 kW
         assert!((conductance_w_k(3000.0, 1500.0, 1500.0) * 20.0 - 20_000.0).abs() < 1e-6);
-        let Outlet::Linear { constant_k, of_inlet } = outlet(3000.0, 1500.0, 1500.0, 290.0) else {
+        let Outlet::Exchange { w_k, other_k } = outlet(3000.0, 1500.0, 1500.0, 290.0) else {
             panic!()
         };
+        let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, 1500.0);
         // 310 K leaves with 310 - 2/3 20 = 296.67
         assert!((constant_k + of_inlet * 310.0 - 296.666_667).abs() < 1e-6);
         assert_eq!(outlet(3000.0, 0.0, 1500.0, 290.0), Outlet::HeatFlow(0.0));

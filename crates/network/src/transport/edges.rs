@@ -33,6 +33,11 @@ impl Transport {
                     Outlet::Ends { a_k, b_k } => {
                         Relation::constant(if m < 0.0 { a_k } else { b_k })
                     }
+                    Outlet::Exchange { w_k, other_k } => {
+                        let (constant_k, of_inlet) =
+                            Outlet::of_exchange(w_k, other_k, m.abs() * cp);
+                        Relation { constant_k, of_inlet, ..Relation::PASS }
+                    }
                     Outlet::Linear { constant_k, of_inlet } => {
                         Relation { constant_k, of_inlet, ..Relation::PASS }
                     }
@@ -118,6 +123,10 @@ impl Transport {
         match request.outlet {
             Outlet::Temperature(t_k) | Outlet::Ends { b_k: t_k, .. } => t_k,
             Outlet::Linear { constant_k, of_inlet } => constant_k + of_inlet * t_k,
+            Outlet::Exchange { w_k, other_k } => {
+                let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, capacity);
+                constant_k + of_inlet * t_k
+            }
             Outlet::HeatFlow(q_w) => t_k + rise_k(q_w),
             Outlet::Cooled { wanted_w, coldest_k } => {
                 (t_k + rise_k(-wanted_w)).max(coldest_k.min(t_k))

@@ -9,6 +9,8 @@
 //! **Assumptions** and **Numerics** those of the exchange. **Validity** both flows steady over a step. **Signs** in
 //! heating from the hot to the cold line; in cooling from the cold to the hot line if `reversed_for_cold`.
 //!
+//! With `house_flow = "given"` another unit of the circuit sets the flow, of which the modulation is the share that passes.
+//!
 //! **Sources** `angelidis2023` (priority of direct cooling); UA assumed.
 
 use crate::direct_exchange;
@@ -41,6 +43,8 @@ pub struct DirectExchangerParams {
     pub approach_difference_k: f64,
     /// Full flow of the house, m3/s.
     pub house_v_flow_m3_s: f64,
+    /// Whether the house side has its own pump, or takes the flow of its circuit.
+    pub house_flow: HouseFlow,
     /// How the flow of the grid is set.
     pub grid_flow_control: FlowControl,
     /// Change of the grid water with `constant_temperature_difference`, K.
@@ -55,6 +59,17 @@ pub struct DirectExchangerParams {
     pub reversed_for_cold: bool,
 }
 
+/// What sets the flow of the house through an exchanger.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HouseFlow {
+    /// Its own pump: the modulation times the full flow.
+    #[default]
+    Own,
+    /// Another unit of the circuit.
+    Given,
+}
+
 impl Default for DirectExchangerParams {
     fn default() -> Self {
         Self {
@@ -63,6 +78,7 @@ impl Default for DirectExchangerParams {
             ua_w_k: 3000.0,
             approach_difference_k: 2.0,
             house_v_flow_m3_s: 30.0 / 60_000.0,
+            house_flow: HouseFlow::Own,
             grid_flow_control: FlowControl::ConstantTemperatureDifference,
             grid_temperature_difference_k: 5.0,
             grid_v_flow_min_m3_s: 2.0 / 60_000.0,
@@ -82,6 +98,7 @@ pub struct DirectExchanger {
     ua_w_k: f64,
     approach_k: f64,
     house_w_k: f64,
+    house_flow: HouseFlow,
     grid: Stream,
     reversed_for_cold: bool,
     medium: Medium,
@@ -120,6 +137,7 @@ impl DirectExchangerParams {
             mode: share("mode", self.mode)?,
             ua_w_k: positive("ua_w_k", self.ua_w_k)?,
             approach_k: not_negative("approach_difference_k", self.approach_difference_k)?,
+            house_flow: self.house_flow,
             house_w_k: capacity_w_k(positive("house_v_flow_m3_s", self.house_v_flow_m3_s)?),
             grid: match self.grid_flow_control {
                 FlowControl::ConstantTemperatureDifference => Stream::Difference {
@@ -152,7 +170,11 @@ impl ThermalUnit for DirectExchanger {
     fn ports(&self) -> Vec<UnitPort> {
         vec![
             UnitPort { name: "grid".into(), sets_flow: true, leads: true },
-            UnitPort { name: "house".into(), sets_flow: true, leads: false },
+            UnitPort {
+                name: "house".into(),
+                sets_flow: self.house_flow == HouseFlow::Own,
+                leads: false,
+            },
         ]
     }
 
@@ -196,7 +218,15 @@ impl ThermalUnit for DirectExchanger {
             return;
         }
         let modulation = signals.get(0);
-        let house_w_k = modulation * self.house_w_k;
+        let house_w_k = match (self.house_flow, got) {
+            (HouseFlow::Given, [_, house]) => {
+                modulation * capacity_w_k(&self.medium, house.m_flow_kg_s)
+            }
+            _ => modulation * self.house_w_k,
+        };
+        if house_w_k <= 0.0 {
+            return;
+        }
         let inlets_k = (state[GRID_K] - state[HOUSE_K]).abs();
         let grid_w_k = match self.grid {
             Stream::Flow(w_k) => modulation * w_k,
@@ -257,7 +287,9 @@ mod tests {
         for _ in 0..3 {
             let mut wanted = [PortRequest::default(); 2];
             unit.request(&signals, &ports, &mut state, &mut wanted);
-            if let Outlet::Linear { constant_k, of_inlet } = wanted[GRID].outlet {
+            if let Outlet::Exchange { w_k, other_k } = wanted[GRID].outlet {
+                let capacity = capacity_w_k(&Medium::default(), wanted[GRID].m_flow_kg_s);
+                let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, capacity);
                 let t_out_k = constant_k + of_inlet * grid_k;
                 ports[GRID] =
                     PortFlow { m_flow_kg_s: wanted[GRID].m_flow_kg_s, t_in_k: grid_k, t_out_k };

@@ -26,7 +26,10 @@ fn left_k(request: &PortRequest, m_flow_kg_s: f64, t_in_k: f64) -> f64 {
     match request.outlet {
         Outlet::HeatFlow(q_w) => warmed(q_w),
         Outlet::Cooled { wanted_w, coldest_k } => warmed(-wanted_w).max(coldest_k).min(t_in_k),
-        Outlet::Linear { constant_k, of_inlet } => constant_k + of_inlet * t_in_k,
+        Outlet::Exchange { w_k, other_k } => {
+            let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, m_flow_kg_s.abs() * CP);
+            constant_k + of_inlet * t_in_k
+        }
         other => panic!("{other:?}"),
     }
 }
