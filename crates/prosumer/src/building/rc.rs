@@ -79,6 +79,7 @@ impl RcNetwork {
 
     /// The network ready to run; `None` where it has more than `N` capacities, or nodes without capacity that
     /// are connected to nothing.
+    #[allow(clippy::needless_range_loop, reason = "rows and columns of several matrices at once")]
     pub fn model<const N: usize, const U: usize, const Y: usize>(
         &self,
     ) -> Option<RcModel<N, U, Y>> {
