@@ -199,8 +199,12 @@ points = [[0, 4000], [46800, 0]]
 "#;
 
 fn houses() -> Simulation {
-    let model = Model::from_toml(HOUSES, &workspace())
-        .unwrap_or_else(|problems| panic!("{}", problems.render(HOUSES)));
+    simulation(HOUSES)
+}
+
+fn simulation(text: &str) -> Simulation {
+    let model = Model::from_toml(text, &workspace())
+        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
     Simulation::new(build(&model).unwrap()).unwrap()
 }
 
@@ -255,4 +259,27 @@ fn houses_continue_bit_for_bit_and_allocate_nothing() {
     simulation.take_events();
     let found = measure(|| simulation.advance_to(seconds(12_600), seconds(60)).unwrap());
     assert_eq!((simulation.take_events().count(), found.count_total), (0, 0));
+}
+
+#[test]
+fn houses_stand_in_the_weather() {
+    // Sun of 500 W/m2 in the south, 30 deg up, over 100 W/m2 of the sky: the front of the house (sides 1 : 1.25, so 5/9 of
+    // the walls are front and back) gets 433 W/m2. Mean 5/18 * 433.01 + 50 + 35 = 205.28 W/m2 on 45 m2 of windows, of
+    // which 0.6 * 0.7 comes in: 3879.8 W. What a schedule drives does not follow the weather.
+    let after = |t_outdoor_degc: f64| {
+        let weather = format!(
+            "[weather]\nkind = \"constant\"\nt_outdoor_degc = {t_outdoor_degc:?}\nbeam_normal_w_m2 = 500\n\
+             diffuse_horizontal_w_m2 = 100\nglobal_horizontal_w_m2 = 350\nsun_elevation_deg = 30\n"
+        );
+        let mut simulation = simulation(&format!("{HOUSES}\n{weather}"));
+        simulation.advance_to(seconds(60), seconds(60)).unwrap();
+        let get = |name: &str| simulation.get(simulation.channel(name).unwrap());
+        for house in ["warm", "cool"] {
+            let sun_w = get(&format!("{house}.sun_w"));
+            assert!((sun_w - 3879.8).abs() < 0.1, "{house}: {sun_w}");
+        }
+        (get("warm.loss_w"), get("cool.loss_w"))
+    };
+    let ((warm, cool), (same, more)) = (after(17.0), after(7.0));
+    assert!(warm == same && more > cool + 1000.0, "{warm} {same}, {cool} {more}");
 }
