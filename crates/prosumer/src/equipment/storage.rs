@@ -1,9 +1,8 @@
 //! Thermal storage: an upright tank of stratified water, in one dimension.
 //!
-//! **Equation** per layer, from the bottom,
-//! `rho cp V_l dT_l/dt = sum_ports m_in cp (T_in - T_l) + cp m_up (T_(l-1) - T_l) + cp m_down (T_(l+1) - T_l)
-//! + Q_buoy,(l-1)->l - Q_buoy,l->(l+1) + lambda A_c/dz (T_(l+1) - 2 T_l + T_(l-1)) - UA_l (T_l - T_amb) +
-//! Q_coil,l + Q_rod,l`; see `layers` (geometry), `ports` (flows), `mixed_layers` and `plug_flow` (advection),
+//! **Equation** per layer, from the bottom, `rho cp V_l dT_l/dt = sum_ports m_in cp (T_in - T_l) + cp m_up
+//! (T_(l-1) - T_l) + cp m_down (T_(l+1) - T_l) + Q_buoy,(l-1)->l - Q_buoy,l->(l+1) + lambda A_c/dz (T_(l+1) -
+//! 2 T_l + T_(l-1)) - UA_l (T_l - T_amb) + Q_coil,l + Q_rod,l`; see `layers` (geometry), `ports` (flows), `mixed_layers` and `plug_flow` (advection),
 //! `exchange` (conduction, loss, buoyancy), `coil`, `rod`, `tank` (a step of all of it).
 //!
 //! **Assumptions** water of the same height has the same temperature; no mixing by momentum of what enters

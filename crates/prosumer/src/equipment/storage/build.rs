@@ -172,7 +172,7 @@ impl StorageParams {
             for t_k in values_k {
                 liquid(medium, field, *t_k)?;
             }
-            Ok(Initial::Layers(layers.from_sensors(values_k)))
+            Ok(Initial::Layers(layers.of_sensors(values_k)))
         };
         match (self.initial_k, self.initial_bottom_k, self.initial_top_k) {
             (Some(t_k), ..) => of_layers("initial_k", &[t_k]),

@@ -189,8 +189,8 @@ impl Coil {
         let rate = self.ua_nominal_w_k / (self.content_kg * heat_capacity_j_kg_k);
         let risen_k = (mean_k - *content_k) * -(-rate * dt_s).exp_m1();
         *content_k += risen_k;
-        for i in 0..cells.count {
-            cells.t_k[i] -= risen_k * self.content_kg * share[i] / cells.mass_kg[i];
+        for (i, share) in share.iter().enumerate().take(cells.count) {
+            cells.t_k[i] -= risen_k * self.content_kg * share / cells.mass_kg[i];
         }
     }
 }

@@ -86,7 +86,7 @@ impl Layers {
 
     /// Temperatures of the layers from those of equal stretches (sensors), from bottom to top, by overlap:
     /// `T_l = sum_i T_i overlap(l, i) n`.
-    pub(super) fn from_sensors(&self, sensors_k: &[f64]) -> Vec<f64> {
+    pub(super) fn of_sensors(&self, sensors_k: &[f64]) -> Vec<f64> {
         let (n, sensors) = (self.count as f64, sensors_k.len() as f64);
         let layer = |l: usize| {
             let overlap = |i: usize| {
@@ -237,13 +237,13 @@ mod tests {
     #[test]
     fn sensors_by_overlap() {
         // Four sensors on ten layers: layer 3 (0.2..0.3) is half of sensor 1 and half of sensor 2.
-        let t = layers(10).from_sensors(&[10.0, 20.0, 30.0, 40.0]);
+        let t = layers(10).of_sensors(&[10.0, 20.0, 30.0, 40.0]);
         assert!((t[0] - 10.0).abs() < 1e-12 && (t[2] - 15.0).abs() < 1e-12, "{t:?}");
         assert!((t.iter().sum::<f64>() / 10.0 - 25.0).abs() < 1e-12);
         // The shares of a layer sum to 1 whatever the numbers.
         for count in [1, 3, 7, 100, 200] {
             for sensors in [1, 2, 10, 13] {
-                let t = layers(count).from_sensors(&vec![1.0; sensors]);
+                let t = layers(count).of_sensors(&vec![1.0; sensors]);
                 assert!(t.iter().all(|t| (t - 1.0).abs() < 1e-12), "{count} {sensors}: {t:?}");
             }
         }

@@ -48,7 +48,7 @@ impl<const N: usize> Stack<'_, N> {
             }
             self.next += 1;
             let stream = &self.streams[opening.port];
-            let flow = opening.into_tank_kg_s(stream.m_flow_kg_s, self.positions[opening.port]);
+            let flow = opening.entering_tank_kg_s(stream.m_flow_kg_s, self.positions[opening.port]);
             if flow > 0.0 {
                 self.entering = Some((flow * self.dt_s, stream.t_in_k));
                 return self.take(wanted_kg);
@@ -114,7 +114,7 @@ pub(super) fn displace<const N: usize>(
     };
     for opening in &openings.0 {
         let stream = &streams[opening.port];
-        let flow = opening.into_tank_kg_s(stream.m_flow_kg_s, positions[opening.port]);
+        let flow = opening.entering_tank_kg_s(stream.m_flow_kg_s, positions[opening.port]);
         if flow >= 0.0 {
             continue;
         }

@@ -86,7 +86,7 @@ impl Opening {
     }
 
     /// Flow into the tank, kg/s; negative: out of it.
-    pub(super) fn into_tank_kg_s(&self, m_flow_kg_s: f64, position: f64) -> f64 {
+    pub(super) fn entering_tank_kg_s(&self, m_flow_kg_s: f64, position: f64) -> f64 {
         let flow = m_flow_kg_s.abs() * self.share(position);
         if self.end == Port::upstream(m_flow_kg_s) {
             flow * self.entering
@@ -273,7 +273,7 @@ impl<const N: usize> LayerFlows<N> {
         let mut flows = Self { in_kg_s: [0.0; N], in_kg_k_s: [0.0; N], up_kg_s: [0.0; N] };
         for opening in &openings.0 {
             let stream = &streams[opening.port];
-            let flow = opening.into_tank_kg_s(stream.m_flow_kg_s, positions[opening.port]);
+            let flow = opening.entering_tank_kg_s(stream.m_flow_kg_s, positions[opening.port]);
             flows.up_kg_s[opening.layer] += flow;
             if flow > 0.0 {
                 flows.in_kg_s[opening.layer] += flow;

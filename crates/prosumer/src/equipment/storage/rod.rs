@@ -99,8 +99,8 @@ impl Rod {
         if heat_j < wanted_j {
             *blocked = true;
         }
-        for i in 0..cells.count {
-            cells.t_k[i] += heat_j * share[i] / (cells.mass_kg[i] * heat_capacity_j_kg_k);
+        for (i, share) in share.iter().enumerate().take(cells.count) {
+            cells.t_k[i] += heat_j * share / (cells.mass_kg[i] * heat_capacity_j_kg_k);
         }
         heat_j
     }

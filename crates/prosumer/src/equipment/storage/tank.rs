@@ -231,7 +231,7 @@ impl Tank {
             for opening in &self.openings.0 {
                 let (m, position) =
                     (streams[opening.port].m_flow_kg_s, with.positions[opening.port]);
-                let flow = opening.into_tank_kg_s(m, position);
+                let flow = opening.entering_tank_kg_s(m, position);
                 if flow < 0.0 {
                     passed.outlets[opening.port].constant_k -=
                         flow / m.abs() * cells.t_k[opening.layer];

@@ -411,19 +411,27 @@ fn what_cannot_be_is_refused() {
         ),
         (reason(&|p| (p.u_w_m2_k, p.ua_w_k) = (Some(1.0), Some(1.0))), "not both"),
         (
-            reason(&|p| drop(p.ports.insert("high".to_owned(), port(2.0, 0.1)))),
+            reason(&|p| {
+                let _ = p.ports.insert("high".to_owned(), port(2.0, 0.1));
+            }),
             "ports.high has inlet_m = 2: the storage reaches from 0 to height_m = 1.755",
         ),
         (
-            reason(&|p| drop(p.coils.insert("charge".to_owned(), coil()))),
+            reason(&|p| {
+                let _ = p.coils.insert("charge".to_owned(), coil());
+            }),
             "ports.charge has the name of a coil",
         ),
         (
-            reason(&|p| drop(p.ports.insert("flat".to_owned(), port(1.0, 1.01)))),
+            reason(&|p| {
+                let _ = p.ports.insert("flat".to_owned(), port(1.0, 1.01));
+            }),
             "ports.flat enters and leaves in layer 6",
         ),
         (
-            reason(&|p| drop(p.coils.insert("solar".to_owned(), coil()))),
+            reason(&|p| {
+                let _ = p.coils.insert("solar".to_owned(), coil());
+            }),
             "coils.solar: give either inlet_m and outlet_m or inlet_layer and outlet_layer",
         ),
         (
