@@ -32,7 +32,7 @@ fn steps(criterion: &mut Criterion) {
                     let mut wanted = [PortRequest::default()];
                     unit.request(&Signals(&signals), &got, &mut state, &mut wanted);
                     let Outlet::Ends { a_k, b_k } = wanted[0].outlet else { return };
-                    let charges = count / 2000 % 2 == 0;
+                    let charges = (count / 2000).is_multiple_of(2);
                     let wave = f64::from(count % 300) / 30.0;
                     got[0] = match charges {
                         true => PortFlow { m_flow_kg_s: 0.1, t_in_k: 338.15 + wave, t_out_k: b_k },

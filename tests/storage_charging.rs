@@ -401,6 +401,9 @@ fn standing() -> String {
     )
 }
 
+/// What it is, file, tank, rise of the initial temperature per segment, K, and when it is charged.
+type Case<'a> = (&'a str, &'a str, &'a str, f64, &'a dyn Fn(f64) -> bool);
+
 /// A tank of 0.1 m3 in seven segments, 0.0694 kg/s, of which Dymola computed the IBPSA library's model.
 fn beside_ibpsa() -> String {
     let Some(folder) = reference_data("ibpsa_component_ref") else { return String::new() };
@@ -426,7 +429,7 @@ fn beside_ibpsa() -> String {
          101 times.\n\n| case | RMSE, K | largest, K |\n|---|---|---|\n",
     );
     let charging = |t_s: f64| (t_s / 3600.0).floor() as i64 % 2 == 1;
-    let cases: [(&str, &str, &str, f64, &dyn Fn(f64) -> bool); 3] = [
+    let cases: [Case<'_>; 3] = [
         ("loading and unloading in turns", "StratifiedLoadingUnloading", "tan", 0.0, &charging),
         ("warm water into a layered tank", "StratifiedNonUniformInitial", "heaTan", 1.0, &|_| true),
         ("cold water into a layered tank", "StratifiedNonUniformInitial", "cooTan", 1.0, &|_| {
