@@ -23,8 +23,11 @@ fn operation(modulation: f64, source_degc: f64, return_degc: f64) -> Operation {
     }
 }
 
-/// Heat in kW and COP of the reference unit over modulation 0.2, 0.4, ... 1.
-const CHECK: [(f64, f64, [(f64, f64); 5]); 8] = [
+/// Air and return temperature, degC, and heat in kW and COP over modulation 0.2, 0.4, ... 1.
+type CheckRow = (f64, f64, [(f64, f64); 5]);
+
+/// Of the reference unit.
+const CHECK: [CheckRow; 8] = [
     (-7.0, 30.0, [(3.54, 6.93), (4.39, 7.42), (5.88, 5.64), (7.34, 4.82), (8.05, 4.80)]),
     (-7.0, 45.0, [(2.62, 3.19), (3.36, 3.46), (4.67, 3.02), (5.94, 2.77), (6.57, 2.76)]),
     (2.0, 30.0, [(4.61, 8.35), (5.71, 8.95), (7.66, 6.79), (9.56, 5.81), (10.48, 5.78)]),

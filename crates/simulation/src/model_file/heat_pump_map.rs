@@ -43,22 +43,28 @@ struct Sheet {
 impl Sheet {
     fn read(file: &str, dir: &Path) -> Result<Self, Problem> {
         let unreadable = |error: String| Problem::new("file", format!("{file}: {error}"));
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .flexible(true)
-            .comment(Some(b'#'))
-            .from_path(dir.join(file))
-            .map_err(|error| {
-                unreadable(format!("cannot be read: {error}"))
-                    .hint("the path is relative to the folder of the model file")
-            })?;
-        let header = reader.headers().map_err(|error| unreadable(error.to_string()))?;
-        let header = header.iter().map(str::to_owned).collect();
+        let text = std::fs::read_to_string(dir.join(file)).map_err(|error| {
+            unreadable(format!("cannot be read: {error}"))
+                .hint("the path is relative to the folder of the model file")
+        })?;
+        // Line by line, so that remarks do not shift the lines of messages.
         let mut rows = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(|error| unreadable(error.to_string()))?;
-            rows.push((record.position().map_or(0, csv::Position::line), record));
+        for (line, text) in (1..).zip(text.lines()) {
+            if text.trim().is_empty() || text.starts_with('#') {
+                continue;
+            }
+            let reader = csv::ReaderBuilder::new()
+                .has_headers(false)
+                .trim(csv::Trim::All)
+                .from_reader(text.as_bytes());
+            for record in reader.into_records() {
+                rows.push((line, record.map_err(|error| unreadable(error.to_string()))?));
+            }
         }
+        if rows.is_empty() {
+            return Err(unreadable("is empty".into()));
+        }
+        let header = rows.remove(0).1.iter().map(str::to_owned).collect();
         Ok(Self { file: file.to_owned(), header, rows })
     }
 
@@ -193,13 +199,10 @@ fn table(map: &mut PerformanceMapParams, sheet: &Sheet) -> Result<(), Problem> {
             "every combination needs a row; repeat the nearest point where a unit cannot work",
         ));
     }
-    let rows = |values: &[f64]| -> Vec<Vec<f64>> {
-        let cells: Vec<f64> = row_of.iter().flatten().map(|row: &usize| values[*row]).collect();
-        cells.chunks(w_axis.len()).map(<[f64]>::to_vec).collect()
-    };
-    map.heat_w = rows(&heat);
-    map.electric_w = electric.as_deref().map(rows).unwrap_or_default();
-    map.cop = cop.as_deref().map(rows).unwrap_or_default();
+    let width = w_axis.len();
+    map.heat_w = in_order(&row_of, width, &heat);
+    map.electric_w = electric.map_or_else(Vec::new, |values| in_order(&row_of, width, &values));
+    map.cop = cop.map_or_else(Vec::new, |values| in_order(&row_of, width, &values));
     if by_return {
         map.return_k = w_axis.clone();
     } else {
@@ -207,6 +210,12 @@ fn table(map: &mut PerformanceMapParams, sheet: &Sheet) -> Result<(), Problem> {
     }
     (map.modulation, map.source_k) = (m_axis.clone(), s_axis.clone());
     Ok(())
+}
+
+/// A column in the order of the map: `row_of` is the row of each point, `width` the number of water temperatures.
+fn in_order(row_of: &[Option<usize>], width: usize, values: &[f64]) -> Vec<Vec<f64>> {
+    let cells: Vec<f64> = row_of.iter().flatten().map(|row| values[*row]).collect();
+    cells.chunks(width).map(<[f64]>::to_vec).collect()
 }
 
 /// Reference points: temperatures of air, brine and water, of the supply and of the air outdoors, degC.

@@ -239,7 +239,7 @@ impl AirSourceHeatPumpParams {
             not_negative(field, value)?;
         }
         if let Some(cop_max) = self.cop_max
-            && !(cop_max >= 1.0)
+            && (cop_max.is_nan() || cop_max < 1.0)
         {
             return Err(UnitError::OutOfRange {
                 field: "cop_max",

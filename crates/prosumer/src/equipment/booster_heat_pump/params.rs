@@ -271,7 +271,7 @@ impl BoosterHeatPumpParams {
         let out_of_range =
             |field, value, requirement| Err(UnitError::OutOfRange { field, value, requirement });
         if let Some(cop_max) = self.cop_max
-            && !(cop_max >= 1.0)
+            && (cop_max.is_nan() || cop_max < 1.0)
         {
             return out_of_range("cop_max", cop_max, "must be at least 1");
         }
