@@ -15,6 +15,7 @@
 //! Positive flow is feed-in, from the cold to the hot line. `port_hot` and `port_cold` hold the water of the
 //! interface.
 
+use super::expand::Plain;
 use super::station_parts::{Expanded, Names, RESISTANCE, default_volume, stub};
 use super::{InterfaceEntry, SiteEntry, StationKind, is_null, station_name};
 use crate::document::Tree;
@@ -124,6 +125,8 @@ pub enum FlowControl {
     Pi,
     /// At once, within what the curve at full speed or the open valve allows.
     QuasiSteady,
+    /// At once and whatever head it takes: flow sources instead of pumps and valves, for long runs of many houses.
+    Ideal,
 }
 
 fn default_gain() -> f64 {
@@ -140,6 +143,27 @@ fn default_dead_time() -> f64 {
 }
 
 const PUMP: &[&str] = &["head_max_", "free_flow_", "curve_"];
+
+/// Flow sources for the directions that are there: feed-in, extraction.
+fn ideal(
+    names: Names<'_>,
+    nodes: Vec<Plain>,
+    mut edges: Vec<Plain>,
+    (feeds_in, extracts): (bool, bool),
+) -> Expanded {
+    let mut source = |part: &'static str, from: &str, to: &str| {
+        let ends = (names.inner(from), names.inner(to));
+        edges.push(names.part(part, "flow_source", ends, json!({})));
+        names.inner(&format!("{part}.m_flow_set_kg_s"))
+    };
+    let interface = InterfaceEntry {
+        edge: names.inner("interface"),
+        feed_in_set: feeds_in.then(|| source("feed_in_source", "branch_cold", "port_cold")),
+        extraction_set: extracts.then(|| source("extraction_source", "port_cold", "branch_cold")),
+        ..InterfaceEntry::watching(names.id.clone())
+    };
+    Expanded { nodes, edges, interface, controllers: Vec::new() }
+}
 
 impl ProsumerEntry {
     /// The parts of the station; `step_s` is the longest step of the run.
@@ -175,9 +199,14 @@ impl ProsumerEntry {
                 resistance,
             ),
         ];
+        let stub_cold = names.part("stub_cold", "pipe", (names.inner("branch_cold"), cold), stub());
+        if control == FlowControl::Ideal {
+            edges.push(stub_cold);
+            return ideal(names, nodes, edges, (feeds_in, extracts));
+        }
         let mode = match control {
             FlowControl::Pi => json!({}),
-            FlowControl::QuasiSteady => json!({ "mode": "flow" }),
+            FlowControl::QuasiSteady | FlowControl::Ideal => json!({ "mode": "flow" }),
         };
         let pump = |part: &str| {
             let curve = json!({ "head_max_hpa": 402.21, "free_flow_l_min": 55.33 });
@@ -213,7 +242,7 @@ impl ProsumerEntry {
                 FlowControl::Pi => {
                     ("valve", json!({ "kvs_m3_h": 2.5, "leakage": 2e-3, "opening": 0.0 }))
                 }
-                FlowControl::QuasiSteady => {
+                FlowControl::QuasiSteady | FlowControl::Ideal => {
                     ("flow_limiter", json!({ "kvs_m3_h": 2.5, "m_flow_set_kg_s": 0.0 }))
                 }
             };
@@ -231,10 +260,12 @@ impl ProsumerEntry {
             let ends = branch("extraction_outlet", "branch_cold");
             edges.push(names.part("extraction_check_valve", "check_valve", ends, check_valve));
         }
-        edges.push(names.part("stub_cold", "pipe", (names.inner("branch_cold"), cold), stub()));
+        edges.push(stub_cold);
         let mut controllers = Vec::new();
         let mut set = |part: &str, command: &str| match control {
-            FlowControl::QuasiSteady => names.inner(&format!("{part}.m_flow_set_kg_s")),
+            FlowControl::QuasiSteady | FlowControl::Ideal => {
+                names.inner(&format!("{part}.m_flow_set_kg_s"))
+            }
             FlowControl::Pi => {
                 let id = names.inner(&format!("{part}.flow_control"));
                 controllers.push(Tree::table(
