@@ -9,8 +9,8 @@
 //!                                                                                                                   |
 //! cold -------------------------------------------stub_cold-------------------------------------------------branch_cold
 //! ```
-//! Two pumps of opposite directions need their shut-off valves: a check valve opens for what the other pump sends
-//! round through its idle neighbour. With one direction, or with an extraction valve, there are none.
+//! The shut-off valves are needed: a check valve opens for what other pumps send through an idle one, be it the
+//! neighbour of the opposite direction or one of another house. With an extraction valve there are none.
 //!
 //! Positive flow is feed-in, from the cold to the hot line. `port_hot` and `port_cold` hold the water of the
 //! interface.
@@ -219,7 +219,7 @@ impl ProsumerEntry {
         let check_valve = json!({ "kvs_m3_h": 11.0, "leakage": 1e-3 });
         let branch = |from: &str, to: &str| (names.inner(from), names.inner(to));
         let by_valve = extracts && self.extraction == Extraction::Valve;
-        let shut_off = feeds_in && extracts && !by_valve;
+        let shut_off = !by_valve;
         let valve = |part: &'static str, ends: (String, String)| {
             let stroke_time_s = if control == FlowControl::Pi { self.dead_time_s } else { 0.0 };
             let defaults = json!({ "kvs_m3_h": 11.0, "open": 0.0, "stroke_time_s": stroke_time_s });
@@ -297,8 +297,9 @@ impl ProsumerEntry {
             requested_flow_m3_s: None,
             feed_in_set,
             extraction_set,
-            feed_in_open: shut_off.then(|| names.inner("feed_in_shut_off.open")),
-            extraction_open: shut_off.then(|| names.inner("extraction_shut_off.open")),
+            feed_in_open: (feeds_in && shut_off).then(|| names.inner("feed_in_shut_off.open")),
+            extraction_open: (extracts && shut_off)
+                .then(|| names.inner("extraction_shut_off.open")),
             dead_time_s: if control == FlowControl::Pi { self.dead_time_s } else { 0.0 },
             id: names.id,
         };
