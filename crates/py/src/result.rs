@@ -170,16 +170,18 @@ impl RunResult {
         Ok(&self.recording.channels[self.find(name)?].unit)
     }
 
-    /// The key results as `{"component.quantity_unit": value}`.
+    /// Key results and indicators as `{"component.quantity_unit": value}`.
     ///
-    /// In the units of a plant (l/min, kW, kWh), as the names say.
+    /// In the units of a plant (l/min, kW, kWh), as the names say: of the network, of sites, stations
+    /// and units, summed up in every step of the run.
     ///
     /// Examples
     /// --------
     /// >>> import anergy
     /// >>> result = anergy.examples.load("three-houses").simulate(until_s=600)
-    /// >>> sorted(result.kpis())[-1]
-    /// 'sf4.station.heat_fed_in_kwh'
+    /// >>> kpis = result.kpis()
+    /// >>> "sf4.station.heat_taken_kwh" in kpis, "network.pump_kwh_per_mwh_taken" in kpis
+    /// (True, True)
     fn kpis<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         python(slf.py(), "anergy._display", "kpis")?.call1((slf,))
     }

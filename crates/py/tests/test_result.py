@@ -68,7 +68,12 @@ def test_events_and_key_results(result):
     summary = result.summary
     assert summary["interrupted"] is False and summary["end_s"] == 600
     kpis = result.kpis()
-    assert len(kpis) == len(summary["key_results"])
+    assert len(kpis) > len(summary["key_results"])
+    taken = summary["kpis"]["stations"]["sf4.station"]["heat_taken_kwh"]
+    assert kpis["sf4.station.heat_taken_kwh"] == taken > 0
+    assert kpis["network.heat_taken_kwh"] == kpis["sf4.heat_taken_kwh"] == taken
+    # What was asked of the feeder, 3.5 l/min for ten minutes.
+    assert kpis["sf1.station.water_requested_m3"] == pytest.approx(0.035)
     assert kpis["sf1.station.flow_at_the_end_l_min"] == pytest.approx(0.781, abs=1e-3)
     assert all(isinstance(value, float) for value in kpis.values())
     assert kpis["network.heat_lost_kwh"] > 0

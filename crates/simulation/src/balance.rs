@@ -1,6 +1,7 @@
 //! The balances that every run reports, and the key results of a run.
 
 use crate::channels;
+use crate::kpi;
 use crate::simulation::{Simulation, stored_j};
 use anergy_core::units::l_min;
 use anergy_network::two_port::EdgeThermal;
@@ -266,6 +267,7 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
         ],
         "blocked": blocked_spans(simulation),
         "swings": swings(simulation),
+        "kpis": kpi::kpis(simulation),
         "pipes": pipes,
         "largest_pipe_error": pipe_error,
         "statistics": {

@@ -20,6 +20,7 @@ pub(crate) use network::pipe_temperatures;
 use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::kpi;
 use crate::model::{Model, Place};
 use crate::model_file::InitialState;
 use crate::plan::{self, EdgeOnMap, Ends, NodeOnMap, Plan, PlannedUnit};
@@ -218,6 +219,7 @@ impl Builder<'_> {
             regulators,
             vessels,
             meters,
+            kpi_places: kpi::Places::default(),
             pipes: pipes(&network),
             pumps: plan::pumps(&network),
             ends: Ends::of(&network),
@@ -276,6 +278,8 @@ impl Builder<'_> {
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
+        plan.kpi_places = kpi::Places::of(&plan);
+        plan.initial.kpis = kpi::Sums::of(&plan);
         Some(plan)
     }
 
@@ -314,6 +318,7 @@ impl Builder<'_> {
             blocked_spans: Vec::new(),
             station_heat_j: vec![0.0; stations.len()],
             meters: Vec::new(),
+            kpis: kpi::Sums::default(),
             pulse_shares: Vec::new(),
             vessels: Vec::new(),
             crossed: Vec::new(),

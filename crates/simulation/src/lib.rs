@@ -48,6 +48,7 @@ pub mod fields;
 mod gains;
 pub mod grammar;
 pub mod isolate;
+mod kpi;
 pub mod model;
 pub mod model_file;
 pub mod nested;

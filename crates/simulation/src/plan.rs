@@ -6,6 +6,7 @@ mod houses;
 use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels::{self, Source};
 use crate::drivers::Driver;
+use crate::kpi;
 use crate::model_file::StepEntry;
 use crate::state::State;
 use crate::weather::Weather;
@@ -208,6 +209,7 @@ pub struct Plan {
     pub(crate) regulators: Vec<SignalId>,
     pub(crate) vessels: Vec<Vessel>,
     pub(crate) meters: Vec<PlannedMeter>,
+    pub(crate) kpi_places: kpi::Places,
     /// Edges that are pipes.
     pub(crate) pipes: Vec<usize>,
     /// Edges that are pumps.

@@ -17,6 +17,7 @@ mod words;
 
 use crate::automatic_step::{AutomaticStep, Limit};
 use crate::error::RunError;
+use crate::kpi;
 use crate::plan::Plan;
 use crate::state::State;
 use crate::weather::Interval;
@@ -154,6 +155,7 @@ impl Simulation {
         self.watch_swings(end, dt_s);
         self.book(dt_s);
         self.book_pipes(dt_s);
+        kpi::book(&self.plan, &mut self.state, &self.transport, dt_s);
         self.read_meters(dt_s);
         self.watch_pressures(end);
         self.hold_pressures(dt_s);
@@ -285,8 +287,8 @@ impl Simulation {
     /// Integrates heat, electricity and hydraulic work.
     fn book(&mut self, dt_s: f64) {
         let (plan, state) = (&self.plan, &mut self.state);
+        state.electric_j += kpi::book_pumps(plan, state, dt_s) * dt_s;
         let network = &state.network;
-        state.electric_j += plan.total_electric_w(network) * dt_s;
         state.units_j += plan.total_units_w(network) * dt_s;
         for exchange in &state.unit_exchange {
             state.units_electric_j += exchange.electric_w * dt_s;

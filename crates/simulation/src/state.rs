@@ -2,6 +2,7 @@
 
 use crate::automatic_step::StepMemory;
 use crate::error::RunError;
+use crate::kpi;
 use crate::simulation::{BlockedSpan, Missed, SwingState};
 use anergy_control::sensor::SensorState;
 use anergy_core::clock::Time;
@@ -53,6 +54,7 @@ pub struct State {
     pub(crate) blocked_spans: Vec<BlockedSpan>,
     pub(crate) station_heat_j: Vec<f64>,
     pub(crate) meters: Vec<Reading>,
+    pub(crate) kpis: kpi::Sums,
     /// Share of the present period for which each pulsing valve is open.
     pub(crate) pulse_shares: Vec<f64>,
     pub(crate) vessels: Vec<VesselState>,
@@ -110,6 +112,7 @@ impl State {
             + heap(&self.stations)
             + heap(&self.station_heat_j)
             + heap(&self.meters)
+            + self.kpis.heap_bytes()
             + heap(&self.pulse_shares)
             + heap(&self.vessels)
             + heap(&self.crossed)

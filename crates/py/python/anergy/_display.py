@@ -18,6 +18,20 @@ HTML_ROWS = 100
 
 
 def kpis(result: Result) -> dict[str, float]:
+    """Key results and indicators by `component.quantity_unit`."""
+    found = _key_results(result)
+    told = result.summary.get("kpis", {})
+    groups = [{"network": told.get("network", {})}]
+    groups += [told.get(name, {}) for name in ("sites", "stations", "units")]
+    for group in groups:
+        for component, numbers in group.items():
+            for name, value in numbers.items():
+                if isinstance(value, float):
+                    found[f"{component}.{name}"] = value
+    return found
+
+
+def _key_results(result: Result) -> dict[str, float]:
     """Key results by `component.quantity_unit`."""
     found: dict[str, float] = {}
     for entry in result.summary.get("key_results", []):
@@ -42,7 +56,7 @@ def result_html(result: Result) -> str:
         ("channels", len(result)),
         ("events", len(result.events)),
     ]
-    rows += [(name, f"{value:.4g}") for name, value in kpis(result).items()]
+    rows += [(name, f"{value:.4g}") for name, value in _key_results(result).items()]
     return _html(result.model_name, rows)
 
 

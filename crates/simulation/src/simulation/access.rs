@@ -98,6 +98,7 @@ impl Simulation {
             && own.network.density_kg_m3.len() == other.network.density_kg_m3.len()
             && own.stations.len() == other.stations.len()
             && own.meters.len() == other.meters.len()
+            && own.kpis.fits(&other.kpis)
             && own.network.prescribed.len() == other.network.prescribed.len()
             && own.network.regulated.len() == other.network.regulated.len()
             && own.pulse_shares.len() == other.pulse_shares.len()
