@@ -206,7 +206,9 @@ impl ProsumerEntry {
         }
         let mode = match control {
             FlowControl::Pi => json!({}),
-            FlowControl::QuasiSteady | FlowControl::Ideal => json!({ "mode": "flow" }),
+            FlowControl::QuasiSteady | FlowControl::Ideal => {
+                json!({ "mode": "flow", "rise_time_s": 0.0 })
+            }
         };
         let pump = |part: &str| {
             let curve = json!({ "head_max_hpa": 402.21, "free_flow_l_min": 55.33 });
