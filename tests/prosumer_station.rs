@@ -233,3 +233,93 @@ fn a_snapshot_in_the_pause_continues_bit_for_bit() {
         assert_eq!(first, second, "{until_s} s");
     }
 }
+
+#[test]
+fn one_pump_between_three_way_valves_delivers_as_two_pumps() {
+    for (flow_control, step_s) in [("pi", 1.0), ("quasi_steady", 60.0)] {
+        let with = |hydraulics: &str| {
+            let text =
+                format!("{GRID}flow_control = \"{flow_control}\"\nhydraulics = \"{hydraulics}\"\n");
+            let mut simulation = simulation(&text);
+            [600.0, 1200.0, 1800.0].map(|until_s| {
+                advance(&mut simulation, until_s, step_s);
+                let balances = Balances::of(&simulation);
+                assert!(balances.heat_error() < 1e-9, "{hydraulics}: {balances:?}");
+                assert!(balances.hydraulic_error() < 1e-9, "{hydraulics}: {balances:?}");
+                let p_pa = |node: &str| get(&simulation, &format!("house.{node}.p_pa"));
+                [
+                    get(&simulation, "house.station.m_flow_kg_s") / ASKED,
+                    get(&simulation, "house.unit.q_flow_w") / 10_000.0,
+                    // What the pump overcomes between the two sides of the station.
+                    (p_pa("port_cold") - p_pa("branch_cold")) / 1000.0,
+                    get(&simulation, "bu.hot.t_k") / 300.0,
+                    get(&simulation, "bu.cold.t_k") / 300.0,
+                ]
+            })
+        };
+        let (two, one) = (with("two_pumps"), with("one_pump"));
+        for (two, one) in two.iter().zip(&one) {
+            assert!(two[0].abs() > 0.99 && two[2] * two[0] > 0.0, "{two:?}");
+            for (two, one) in two.iter().zip(one) {
+                assert!((one / two - 1.0).abs() < 0.01, "{flow_control}: {one} {two}");
+            }
+        }
+        assert!(one[1][0] < 0.0 && one[0][0] > 0.0);
+    }
+}
+
+#[test]
+fn one_pump_runs_down_before_its_valves_let_it_run_the_other_way() {
+    let text = format!("{GRID}hydraulics = \"one_pump\"\n");
+    let mut whole = simulation(&text);
+    advance(&mut whole, 600.0, 1.0);
+    let opening =
+        |simulation: &Simulation, way: &str| get(simulation, &format!("house.{way}.opening"));
+    assert_eq!(opening(&whole, "feed_in_way_in"), 1.0);
+    assert!(opening(&whole, "extraction_way_in") < 1e-9);
+    advance(&mut whole, 603.0, 1.0);
+    assert!(get(&whole, "house.pump.speed") > 0.05);
+    // In the pause both three-way valves are shut or on their way.
+    assert!(
+        opening(&whole, "feed_in_way_out") < 0.1 && opening(&whole, "extraction_way_out") < 0.1
+    );
+    let mut restored = simulation(&text);
+    restored.restore_bytes(&whole.snapshot().to_bytes().unwrap()).unwrap();
+    for until_s in [605.0, 1500.0] {
+        for simulation in [&mut whole, &mut restored] {
+            advance(simulation, until_s, 1.0);
+        }
+        let [first, second] = [&whole, &restored].map(|it| it.snapshot().to_bytes().unwrap());
+        assert_eq!(first, second, "{until_s} s");
+        if until_s == 605.0 {
+            assert!(get(&whole, "house.pump.speed") < 0.05);
+            assert!(get(&whole, "house.station.m_flow_kg_s").abs() < 1e-4);
+        }
+    }
+    // Blocked also while it extracts.
+    set(&mut whole, "house.unit.v_flow_m3_s", -100.0 / 60_000.0);
+    advance(&mut whole, 1700.0, 1.0);
+    assert_eq!(get(&whole, "house.station.blocked"), 1.0);
+    assert!(get(&whole, "house.station.m_flow_kg_s") < -ASKED);
+}
+
+#[test]
+fn one_pump_has_a_steady_state() {
+    for flow_control in ["pi", "quasi_steady"] {
+        for (l_min, sign) in [("5", 1.0), ("-5", -1.0)] {
+            let flow = |hydraulics: &str| {
+                let text = format!(
+                    "{}flow_control = \"{flow_control}\"\nhydraulics = \"{hydraulics}\"\n",
+                    GRID.replace("v_flow_l_min = 5", &format!("v_flow_l_min = {l_min}"))
+                        .replace("points = [[0, 5]", &format!("points = [[0, {l_min}]"))
+                );
+                let model = Model::from_toml(&text, Path::new(".")).unwrap();
+                let steady = anergy_simulation::steady::solve(&model).unwrap();
+                steady.edge("house.interface").unwrap().m_flow_kg_s
+            };
+            let (two, one) = (flow("two_pumps"), flow("one_pump"));
+            assert!((sign * two / ASKED - 1.0).abs() < 2e-3, "{flow_control} {l_min}: {two}");
+            assert!((one / two - 1.0).abs() < 0.01, "{flow_control} {l_min}: {one} {two}");
+        }
+    }
+}

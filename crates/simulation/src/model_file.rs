@@ -11,6 +11,7 @@ mod ground;
 mod heat_pump_map;
 mod houses;
 mod nodes;
+mod one_pump;
 mod plant;
 mod prosumer_station;
 pub mod read;

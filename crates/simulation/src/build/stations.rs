@@ -88,7 +88,10 @@ impl Builder<'_> {
                 Some(signal)
             };
             let feed_in = set("feed_in_set", &entry.feed_in_set);
-            let extraction = set("extraction_set", &entry.extraction_set);
+            // One pump for both directions has one signal.
+            let shared = entry.feed_in_set.is_some() && entry.feed_in_set == entry.extraction_set;
+            let extraction =
+                if shared { feed_in } else { set("extraction_set", &entry.extraction_set) };
             let feed_in_open = set("feed_in_open", &entry.feed_in_open);
             let extraction_open = set("extraction_open", &entry.extraction_open);
             // Without all edges there are not all stations: what is missing has been reported.

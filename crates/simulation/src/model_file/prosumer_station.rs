@@ -43,6 +43,9 @@ pub struct ProsumerEntry {
     /// What makes the flow of extraction: a pump, or a valve where the hot line is under pressure.
     #[serde(default)]
     pub extraction: Extraction,
+    /// A pump for each direction, or one between two three-way valves.
+    #[serde(default)]
+    pub hydraulics: Hydraulics,
     /// How the flow is held. Absent: `pi` in steps up to a quarter of the integral time, else `quasi_steady`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flow_control: Option<FlowControl>,
@@ -91,6 +94,15 @@ pub struct ProsumerEntry {
     /// The extraction valve: fields of a valve, or of a flow_limiter where it is quasi-steady.
     #[serde(default, skip_serializing_if = "is_null")]
     pub extraction_valve: Value,
+    /// The one pump of both directions: fields of a pump.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub pump: Value,
+    /// The check valve behind it: fields of a check_valve.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub check_valve: Value,
+    /// The four ways of the three-way valves around it, each: fields of a valve.
+    #[serde(default, skip_serializing_if = "is_null")]
+    pub way: Value,
 }
 
 /// The directions of a prosumer.
@@ -115,6 +127,17 @@ pub enum Extraction {
     Pump,
     /// A valve: the lines must give the pressure difference.
     Valve,
+}
+
+/// What makes the flow of a prosumer in both directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Hydraulics {
+    /// A pump for each direction, or an extraction valve.
+    #[default]
+    TwoPumps,
+    /// One pump between two three-way valves.
+    OnePump,
 }
 
 /// How a prosumer holds the flow that its unit asks for.
@@ -219,6 +242,11 @@ impl ProsumerEntry {
             defaults
         };
         let check_valve = json!({ "kvs_m3_h": 11.0, "leakage": 1e-3 });
+        if self.hydraulics == Hydraulics::OnePump {
+            edges.push(stub_cold);
+            let pump = pump("pump");
+            return self.with_one_pump(names, control, (nodes, edges), (pump, check_valve));
+        }
         let branch = |from: &str, to: &str| (names.inner(from), names.inner(to));
         let by_valve = extracts && self.extraction == Extraction::Valve;
         let shut_off = !by_valve;
@@ -264,27 +292,10 @@ impl ProsumerEntry {
         }
         edges.push(stub_cold);
         let mut controllers = Vec::new();
-        let mut set = |part: &str, command: &str| match control {
-            FlowControl::QuasiSteady | FlowControl::Ideal => {
-                names.inner(&format!("{part}.m_flow_set_kg_s"))
-            }
-            FlowControl::Pi => {
-                let id = names.inner(&format!("{part}.flow_control"));
-                controllers.push(Tree::table(
-                    tree.span,
-                    vec![
-                        ("id", json!(id)),
-                        ("kind", json!("pi")),
-                        ("measures", json!(names.inner(&format!("{part}.m_flow_kg_s")))),
-                        ("acts_on", json!(names.inner(&format!("{part}.{command}")))),
-                        ("set_point", json!(0.0)),
-                        ("gain", json!(self.gain)),
-                        ("integral_time_s", json!(self.integral_time_s)),
-                        ("off_at_zero", json!(true)),
-                    ],
-                ));
-                format!("{id}.set_point")
-            }
+        let mut set = |part: &str, command: &str| {
+            let (set, controller) = self.flow_set(&names, control, part, command);
+            controllers.extend(controller);
+            set
         };
         let feed_in_set = feeds_in.then(|| set("feed_in_pump", "speed"));
         let extraction_set = extracts.then(|| match by_valve {
@@ -308,6 +319,32 @@ impl ProsumerEntry {
         Expanded { nodes, edges, interface, controllers }
     }
 
+    /// The signal that a part gets its flow by, with the controller that holds it.
+    pub(super) fn flow_set(
+        &self,
+        names: &Names<'_>,
+        control: FlowControl,
+        part: &str,
+        command: &str,
+    ) -> (String, Option<Tree>) {
+        if control != FlowControl::Pi {
+            return (names.inner(&format!("{part}.m_flow_set_kg_s")), None);
+        }
+        let id = names.inner(&format!("{part}.flow_control"));
+        let set = format!("{id}.set_point");
+        let controller = names.table(vec![
+            ("id", json!(id)),
+            ("kind", json!("pi")),
+            ("measures", json!(names.inner(&format!("{part}.m_flow_kg_s")))),
+            ("acts_on", json!(names.inner(&format!("{part}.{command}")))),
+            ("set_point", json!(0.0)),
+            ("gain", json!(self.gain)),
+            ("integral_time_s", json!(self.integral_time_s)),
+            ("off_at_zero", json!(true)),
+        ]);
+        (set, Some(controller))
+    }
+
     /// Fields that cannot be, with what is wrong and a hint.
     pub(super) fn problems(&self) -> Vec<(&'static str, String, &'static str)> {
         let mut problems = Vec::new();
@@ -324,6 +361,26 @@ impl ProsumerEntry {
         if self.directions == Directions::FeedIn && self.extraction == Extraction::Valve {
             let message = "a valve for extraction, but only feed-in".to_owned();
             problems.push(("extraction", message, "leave one of the two out"));
+        }
+        let one_pump = self.hydraulics == Hydraulics::OnePump;
+        if one_pump && (self.directions != Directions::Both || self.extraction == Extraction::Valve)
+        {
+            let message = "one pump is for both directions, without an extraction valve".to_owned();
+            problems.push(("hydraulics", message, "leave `directions` and `extraction` out"));
+        }
+        if let Some(part) = self.part_of_the_other_hydraulics(one_pump) {
+            let (message, hint) = if one_pump {
+                (
+                    format!("with one pump there is no {part}"),
+                    "its parts are pump, check_valve, way",
+                )
+            } else {
+                (
+                    format!("with a pump for each direction there is no {part}"),
+                    "hydraulics = \"one_pump\" has it",
+                )
+            };
+            problems.push((part, message, hint));
         }
         problems
     }

@@ -61,6 +61,9 @@ impl<'a> Names<'a> {
         let fields = match name {
             "stub_hot" | "stub_cold" => "stub",
             "feed_in_shut_off" | "extraction_shut_off" => "shut_off",
+            "feed_in_way_in" | "feed_in_way_out" | "extraction_way_in" | "extraction_way_out" => {
+                "way"
+            }
             own => own,
         };
         let part = Part { name, kind, fields, ends, defaults };
@@ -69,6 +72,11 @@ impl<'a> Names<'a> {
             owner: (&self.id).into(),
             entry: format_smolstr!("{}, {fields}", self.what),
         }
+    }
+
+    /// A table at the place of the station.
+    pub(super) fn table(&self, entries: Vec<(&str, Value)>) -> Tree {
+        Tree::table(self.tree.span, entries)
     }
 
     /// The defaults of a part unless the user describes it in another way.

@@ -67,9 +67,13 @@ impl Simulation {
             let wanted = wanted * state.signals[planned.participation.index()];
             let memory = &mut state.stations[planned.station];
             memory.demand = planned.drive.demand(wanted, memory);
+            // One pump for both directions gets what is asked for in either.
+            let shared = planned.feed_in == planned.extraction;
+            let delivered =
+                |own_kg_s: f64| if shared { memory.demand.m_flow_kg_s().abs() } else { own_kg_s };
             let sets = [
-                (planned.feed_in, memory.demand.feed_in_kg_s),
-                (planned.extraction, memory.demand.extraction_kg_s),
+                (planned.feed_in, delivered(memory.demand.feed_in_kg_s)),
+                (planned.extraction, delivered(memory.demand.extraction_kg_s)),
                 (planned.feed_in_open, f64::from(memory.demand.feed_in_kg_s > 0.0)),
                 (planned.extraction_open, f64::from(memory.demand.extraction_kg_s > 0.0)),
             ];
