@@ -86,8 +86,8 @@ fn return_to_supply_needs_the_largest_head_in_a_pressurised_grid() {
         for producer in ["return_to_return", "supply_to_supply"] {
             let local = fed("pressurised", producer, rise_k);
             assert!(local.head_pa > 0.0 && supply.head_pa > 3.0 * local.head_pa, "{local:?}");
-            // A third of the warming takes three times the flow, and most of the advantage is gone.
-            assert!(supply.hydraulic_w > 1.1 * local.hydraulic_w, "{supply:?} {local:?}");
+            // A third of the warming takes three times the flow, and nearly all of the advantage is gone.
+            assert!(supply.hydraulic_w > local.hydraulic_w, "{supply:?} {local:?}");
             if rise_k == 30.0 {
                 assert!((local.flow_kg_s / supply.flow_kg_s - 1.0).abs() < 1e-3);
                 assert!(supply.hydraulic_w > 25.0 * local.hydraulic_w, "{supply:?} {local:?}");
