@@ -2,7 +2,8 @@
 //!
 //! **Numerics** cyclic Jacobi rotations: every entry beside the diagonal is turned to zero in turn until all of
 //! them are below rounding. The vectors are orthogonal to rounding whatever the eigenvalues, also where they
-//! are equal. **Sources** `golub2013`, section 8.5.
+//! are equal. The QR iteration of a library (nalgebra 0.35, tried) leaves a few 1e-9 of the heat of a building, where
+//! balances are to close within 1e-9. **Sources** `golub2013`, section 8.5.
 
 /// Sweeps after which rounding is all that is left: convergence is quadratic, ten are enough for any matrix
 /// of this size.
