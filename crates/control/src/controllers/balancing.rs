@@ -125,7 +125,7 @@ impl BalancingParams {
                 "must be below cooling_start",
             ),
         ] {
-            if !(low < high) {
+            if low.is_nan() || high.is_nan() || low >= high {
                 return Err(ControlError::OutOfRange { field, value: low, requirement });
             }
         }

@@ -113,7 +113,7 @@ impl StorageChargingParams {
             ),
             ("valve_on_k", self.valve_on_k, self.valve_off_k, "must be below valve_off"),
         ] {
-            if !(low < high) {
+            if low.is_nan() || high.is_nan() || low >= high {
                 return Err(ControlError::OutOfRange { field, value: low, requirement: other });
             }
         }

@@ -29,7 +29,7 @@ impl ProsumerEntry {
     /// The station whose nodes and edges outside of the pump are given; `pump` and `check_valve` are defaults.
     pub(super) fn with_one_pump(
         &self,
-        names: Names<'_>,
+        names: &Names<'_>,
         control: FlowControl,
         (mut nodes, mut edges): (Vec<Plain>, Vec<Plain>),
         (pump, check_valve): (Value, Value),
@@ -55,7 +55,7 @@ impl ProsumerEntry {
         edges.push(names.part("pump", "pump", ends, pump));
         let ends = (names.inner("pump_outlet"), names.inner("valve_inlet"));
         edges.push(names.part("check_valve", "check_valve", ends, check_valve));
-        let (set, controller) = self.flow_set(&names, control, "pump", "speed");
+        let (set, controller) = self.flow_set(names, control, "pump", "speed");
         let interface = InterfaceEntry {
             edge: names.inner("interface"),
             pump: Some(names.inner("pump")),

@@ -169,7 +169,7 @@ const PUMP: &[&str] = &["head_max_", "free_flow_", "curve_"];
 
 /// Flow sources for the directions that are there: feed-in, extraction.
 fn ideal(
-    names: Names<'_>,
+    names: &Names<'_>,
     nodes: Vec<Plain>,
     mut edges: Vec<Plain>,
     (feeds_in, extracts): (bool, bool),
@@ -225,7 +225,7 @@ impl ProsumerEntry {
         let stub_cold = names.part("stub_cold", "pipe", (names.inner("branch_cold"), cold), stub());
         if control == FlowControl::Ideal {
             edges.push(stub_cold);
-            return ideal(names, nodes, edges, (feeds_in, extracts));
+            return ideal(&names, nodes, edges, (feeds_in, extracts));
         }
         let mode = match control {
             FlowControl::Pi => json!({}),
@@ -245,7 +245,7 @@ impl ProsumerEntry {
         if self.hydraulics == Hydraulics::OnePump {
             edges.push(stub_cold);
             let pump = pump("pump");
-            return self.with_one_pump(names, control, (nodes, edges), (pump, check_valve));
+            return self.with_one_pump(&names, control, (nodes, edges), (pump, check_valve));
         }
         let branch = |from: &str, to: &str| (names.inner(from), names.inner(to));
         let by_valve = extracts && self.extraction == Extraction::Valve;

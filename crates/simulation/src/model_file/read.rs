@@ -200,7 +200,7 @@ impl ModelReader<'_> {
                     self.reader.report(Diagnostic::new("interface: id is empty", span));
                 }
                 stations.edges.insert(entry.id.clone(), entry.edge.clone());
-                interfaces.push(InterfaceSpec { entry: entry, place: place(&what, &tree, &table) });
+                interfaces.push(InterfaceSpec { entry, place: place(&what, &tree, &table) });
             }
         }
         let circuits = self.circuits();
