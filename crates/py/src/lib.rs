@@ -53,7 +53,7 @@ mod _core {
     /// --------
     /// >>> import anergy
     /// >>> sorted(anergy.schema()["properties"])[:3]
-    /// ['controller', 'edge', 'effect']
+    /// ['circuit', 'controller', 'edge']
     #[pyfunction]
     fn schema(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         convert::to_python(py, &anergy_simulation::model_file::schema::schema())
