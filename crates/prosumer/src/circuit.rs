@@ -37,7 +37,7 @@ enum Limit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Limits(u128);
 
-/// As many members as [`Limits`] can hold.
+/// As many members as their limits have bits for.
 pub const MOST_MEMBERS: usize = 64;
 
 impl Limits {

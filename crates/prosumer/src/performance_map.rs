@@ -1,6 +1,6 @@
 //! Performance maps of heat pumps: heat (or cold) and electric power over modulation and temperatures.
 //!
-//! **Equation** one of four forms: the reference unit of 10 kW as a product of polynomials ([`reference`]), a table
+//! **Equation** one of four forms: the reference unit of 10 kW as a product of polynomials ([`mod@reference`]), a table
 //! ([`table`]), the linear fits of the public database hplib ([`hplib`]), a share of Carnot ([`carnot`]).
 //! The heat taken from the source follows in every form from `Q_source = Q - eta_int P` in heating, the heat given
 //! to the sink from `Q_sink = Q_cold + eta_int P` in cooling, never from a second map.

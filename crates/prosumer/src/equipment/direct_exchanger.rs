@@ -1,7 +1,7 @@
 //! A plate exchanger between the grid and a house without a heat pump: direct cooling from the cold pipe, or heating
 //! from a grid that is warm enough.
 //!
-//! **Equation** see [`direct_exchange`](crate::direct_exchange); it works where the grid is warmer (in cooling colder)
+//! **Equation** see [`crate::direct_exchange`]; it works where the grid is warmer (in cooling colder)
 //! than the return of the house by more than the approach, and goes on until that is missed by 1 K. The flow of the
 //! house, and a constant flow of the grid, are the modulation times their full flow; otherwise the flow of the grid
 //! holds the change of its temperature.
