@@ -42,6 +42,7 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python examples/pump-hunting/run.py
 	$(BIN)/python examples/grids/run.py
 	$(BIN)/python examples/feed-in-types/run.py
+	$(BIN)/python examples/5gdhc-street/run.py
 	$(BIN)/python examples/soil-study/run.py
 	$(BIN)/python examples/rse-facility/run.py
 
