@@ -71,7 +71,8 @@ impl Builder<'_> {
             members.push((unit, port, slot));
         }
         if !(2..=MOST_MEMBERS).contains(&members.len()) {
-            let message = format!("{what}: passes {} ports", members.len());
+            let ports = if members.len() == 1 { "port" } else { "ports" };
+            let message = format!("{what}: passes {} {ports}", members.len());
             let hint = format!("a circuit passes 2 to {MOST_MEMBERS}, and returns to the first");
             self.report(message, through, Some(hint));
             return None;

@@ -97,6 +97,9 @@ impl Builder<'_> {
             // Without all edges there are not all stations: what is missing has been reported.
             let Some(edge) = stations.get(station).map(|station| station.edge) else { continue };
             let Some(port) = houses.edges.iter().position(|port| *port == edge) else {
+                if houses.circuits.len() < model.circuits.len() {
+                    continue;
+                }
                 let message = format!("{what}: no unit asks it for a flow");
                 let hint =
                     "add a [[unit]] at its site, for example a booster_heat_pump or a heat_load";

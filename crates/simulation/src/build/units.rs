@@ -116,12 +116,15 @@ impl Builder<'_> {
             let name =
                 |slot: usize| houses.ports[unit][slot - houses.slots[unit].start].name.clone();
             if more.is_some() || spec.port.is_empty() {
-                let free: Vec<String> = std::iter::once(slot)
-                    .chain(more)
-                    .map(|slot| format!("\"{}\"", name(slot)))
-                    .collect();
-                let message =
-                    format!("{what}: its port {} is in no circuit", free.join(" as well as "));
+                if houses.circuits.len() < self.model.circuits.len() {
+                    // One that is wrong may be that of the port.
+                    continue;
+                }
+                let free = match more {
+                    Some(more) => format!("ports \"{}\" and \"{}\" are", name(slot), name(more)),
+                    None => format!("port \"{}\" is", name(slot)),
+                };
+                let message = format!("{what}: its {free} in no circuit");
                 let hint = match spec.port.is_empty() {
                     true => "pass it by a [[circuit]], or give the site a [[station]] for it",
                     false => {
