@@ -187,6 +187,14 @@ fn constant_flow_needs_less_electricity_and_spreads_temperatures() {
 }
 
 #[test]
+fn units_show_what_they_hold_before_the_first_step() {
+    let simulation = simulation(&text());
+    assert!((degc(&simulation, "bu.storage.t_1_k") - 15.0).abs() < 1e-9);
+    assert!((degc(&simulation, "bu.storage.t_10_k") - 20.0).abs() < 1e-9);
+    assert!((degc(&simulation, "heat.rooms.t_room_k") - 21.0).abs() < 0.1);
+}
+
+#[test]
 fn a_snapshot_continues_bit_for_bit() {
     let mut simulation = simulation(&text());
     simulation.advance_to(time(8.0 * 3600.0), time(60.0)).unwrap();

@@ -5,7 +5,7 @@ use crate::display::Display;
 use crate::escape;
 use crate::lookup::{Lookup, value};
 use crate::sites::SiteGraph;
-use anergy_core::recorder::ChannelGroup::{Edges, Interfaces, Nodes};
+use anergy_core::recorder::ChannelGroup::{Edges, Interfaces, Nodes, Units};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -117,7 +117,10 @@ pub fn plots(lookup: &Lookup, sites: &SiteGraph, flagged: &[Flagged], density_kg
             "temperatures",
             "Temperatures",
             "",
-            vec![draft("Temperature", Display::temperature(), collector.outer_nodes("t_k"))],
+            vec![
+                draft("Temperature", Display::temperature(), collector.outer_nodes("t_k")),
+                draft("Rooms and storages", Display::temperature(), collector.houses()),
+            ],
         ),
         (
             "speeds",
@@ -286,6 +289,20 @@ impl<'a> Collector<'a, '_> {
         let any = vertices.iter().any(|vertex| !vertex.stations.is_empty());
         let wanted = vertices.iter().filter(|vertex| !any || !vertex.stations.is_empty());
         wanted.filter_map(difference).collect()
+    }
+
+    /// Rooms, and bottom and top of storages.
+    fn houses(&self) -> Vec<Source<'a>> {
+        let rooms = self.lookup.components(Units, "t_room_k");
+        let mut sources: Vec<Source> =
+            rooms.filter_map(|id| self.source(id, "t_room_k", id.to_owned())).collect();
+        for id in self.lookup.components(Units, "t_1_k") {
+            let layer = |layer: &usize| self.lookup.column(id, &format!("t_{layer}_k")).is_some();
+            let top = (1..).take_while(layer).last().unwrap_or(1);
+            sources.extend(self.source(id, "t_1_k", format!("{id} bottom")));
+            sources.extend(self.source(id, &format!("t_{top}_k"), format!("{id} top")));
+        }
+        sources
     }
 
     fn edges(&self, quantity: &str) -> Vec<Source<'a>> {

@@ -127,6 +127,7 @@ impl Simulation {
         self.fill_pipes();
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
         self.state.units_initial_j = self.units_stored_j();
+        self.show_units();
         Ok(())
     }
 

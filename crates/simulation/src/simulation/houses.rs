@@ -2,8 +2,10 @@
 
 use super::Simulation;
 use crate::error::RunError;
+use crate::plan::PlannedUnit;
 use anergy_core::signal::Signals;
 use anergy_prosumer::circuit::Undefined;
+use anergy_prosumer::thermal_unit::UnitPort;
 
 impl Simulation {
     /// Units say what they want of their ports in a step of `dt_s`, or in a steady state (0); those that take the
@@ -121,6 +123,23 @@ impl Simulation {
             );
         }
         Ok(())
+    }
+
+    /// Units of houses show what they hold before the first step; nothing moves.
+    pub(super) fn show_units(&mut self) {
+        let (plan, state) = (&self.plan, &mut self.state);
+        let of_house =
+            |unit: &&PlannedUnit| unit.ports.iter().any(|p| p.name != UnitPort::ONLY.name);
+        for unit in plan.units.iter().filter(of_house) {
+            let mut held = state.unit_states[unit.state.clone()].to_vec();
+            unit.equipment.advance(
+                0.0,
+                &Signals(&state.signals[unit.inputs.clone()]),
+                &state.unit_ports[unit.slots.clone()],
+                &mut held,
+                &mut state.unit_outputs[unit.outputs.clone()],
+            );
+        }
     }
 
     /// Tells a unit what its leading port got.
