@@ -13,6 +13,7 @@ mod houses;
 mod nodes;
 mod one_pump;
 mod plant;
+mod prosumer_problems;
 mod prosumer_station;
 pub mod read;
 pub mod schema;

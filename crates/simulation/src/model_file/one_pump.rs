@@ -16,15 +16,6 @@ use super::station_parts::{Expanded, Names};
 use super::{InterfaceEntry, expand::Plain};
 use serde_json::{Value, json};
 
-/// Fields of parts that belong to the station with a pump for each direction.
-const OF_TWO_PUMPS: &[&str] = &[
-    "feed_in_pump",
-    "extraction_pump",
-    "feed_in_check_valve",
-    "extraction_check_valve",
-    "shut_off",
-];
-
 impl ProsumerEntry {
     /// The station whose nodes and edges outside of the pump are given; `pump` and `check_valve` are defaults.
     pub(super) fn with_one_pump(
@@ -68,24 +59,5 @@ impl ProsumerEntry {
             ..InterfaceEntry::watching(names.id.clone())
         };
         Expanded { nodes, edges, interface, controllers: controller.into_iter().collect() }
-    }
-
-    /// Parts of the other hydraulics.
-    pub(super) fn part_of_the_other_hydraulics(&self, one_pump: bool) -> Option<&'static str> {
-        let given = |part: &&&str| {
-            let value = match **part {
-                "feed_in_pump" => &self.feed_in_pump,
-                "extraction_pump" => &self.extraction_pump,
-                "feed_in_check_valve" => &self.feed_in_check_valve,
-                "extraction_check_valve" => &self.extraction_check_valve,
-                "shut_off" => &self.shut_off,
-                "pump" => &self.pump,
-                "check_valve" => &self.check_valve,
-                _ => &self.way,
-            };
-            !value.is_null()
-        };
-        let strange = if one_pump { OF_TWO_PUMPS } else { &["pump", "check_valve", "way"] };
-        strange.iter().find(given).copied()
     }
 }

@@ -344,44 +344,4 @@ impl ProsumerEntry {
         ]);
         (set, Some(controller))
     }
-
-    /// Fields that cannot be, with what is wrong and a hint.
-    pub(super) fn problems(&self) -> Vec<(&'static str, String, &'static str)> {
-        let mut problems = Vec::new();
-        for (field, value) in [("gain", self.gain), ("integral_time_s", self.integral_time_s)] {
-            if !(value.is_finite() && value > 0.0) {
-                let message = format!("{field} = {value} must be positive");
-                problems.push((field, message, "0.6 per kg/s and 8 s suit most pumps"));
-            }
-        }
-        if !(self.dead_time_s.is_finite() && self.dead_time_s >= 0.0) {
-            let message = format!("dead_time_s = {} must not be negative", self.dead_time_s);
-            problems.push(("dead_time_s", message, "5 s suit most pumps"));
-        }
-        if self.directions == Directions::FeedIn && self.extraction == Extraction::Valve {
-            let message = "a valve for extraction, but only feed-in".to_owned();
-            problems.push(("extraction", message, "leave one of the two out"));
-        }
-        let one_pump = self.hydraulics == Hydraulics::OnePump;
-        if one_pump && (self.directions != Directions::Both || self.extraction == Extraction::Valve)
-        {
-            let message = "one pump is for both directions, without an extraction valve".to_owned();
-            problems.push(("hydraulics", message, "leave `directions` and `extraction` out"));
-        }
-        if let Some(part) = self.part_of_the_other_hydraulics(one_pump) {
-            let (message, hint) = if one_pump {
-                (
-                    format!("with one pump there is no {part}"),
-                    "its parts are pump, check_valve, way",
-                )
-            } else {
-                (
-                    format!("with a pump for each direction there is no {part}"),
-                    "hydraulics = \"one_pump\" has it",
-                )
-            };
-            problems.push((part, message, hint));
-        }
-        problems
-    }
 }
