@@ -3,9 +3,13 @@
 #![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
+use anergy_core::error::RecordError;
+use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
+use anergy_simulation::model_file::{Duration, StepEntry};
+use anergy_simulation::run::{RunOptions, run};
 use anergy_simulation::simulation::Simulation;
 use anergy_tests::workspace;
 
@@ -223,5 +227,38 @@ fn steps_of_a_second_agree_with_steps_of_a_minute() {
     ] {
         println!("| {what} | {coarse:.3} | {fine:.3} | {:.2} % |", 100.0 * (coarse / fine - 1.0));
         assert!((coarse / fine - 1.0).abs() < 0.01, "{what}: {coarse} and {fine}");
+    }
+}
+
+#[test]
+fn a_run_with_steps_too_long_for_its_control_warns() {
+    #[derive(Default)]
+    struct Events(Vec<Event>);
+    impl Recorder for &mut Events {
+        fn start(&mut self, _header: &RunHeader, _channels: &[Channel]) -> Result<(), RecordError> {
+            Ok(())
+        }
+        fn row(&mut self, _time: Time, _values: &[f64]) -> Result<(), RecordError> {
+            Ok(())
+        }
+        fn event(&mut self, event: &Event) -> Result<(), RecordError> {
+            self.0.push(event.clone());
+            Ok(())
+        }
+        fn finish(self: Box<Self>, _summary: &serde_json::Value) -> Result<(), RecordError> {
+            Ok(())
+        }
+    }
+    let fine = with(&text(), "step = \"60s\"", "step = \"1s\"");
+    for (step_s, warnings) in [(1.0, 0), (2.0, 0), (60.0, 2)] {
+        let mut events = Events::default();
+        let options = RunOptions {
+            until: Some(time(600.0)),
+            step: Some(StepEntry::Fixed(Duration(time(step_s)))),
+            record: None,
+        };
+        run(&mut simulation(&fine), options, Box::new(&mut events), &mut |_, _| true).unwrap();
+        let coarse = events.0.iter().filter(|event| event.kind == "coarse_step").count();
+        assert_eq!(coarse, warnings, "{step_s} s: {:?}", events.0);
     }
 }

@@ -54,6 +54,14 @@ impl Step {
         }
     }
 
+    /// The fixed step, or the longest automatic one.
+    pub(crate) fn longest(&self) -> Time {
+        match self {
+            Self::Fixed(step) => *step,
+            Self::Automatic(limits) => limits.max,
+        }
+    }
+
     /// Largest fixed step, or shortest automatic one.
     pub(crate) fn shortest(&self) -> Time {
         match self {

@@ -55,6 +55,9 @@ pub fn run(
         }
         Ok::<(), RunError>(())
     };
+    for event in simulation.coarse_steps(step.longest()) {
+        recorder.event(&event)?;
+    }
     write(simulation, recorder.as_mut())?;
     let mut failure = None;
     while simulation.time() < until {

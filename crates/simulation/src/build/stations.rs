@@ -6,6 +6,7 @@ use super::units::Houses;
 use crate::diagnostic::did_you_mean;
 use crate::plan::PlannedDrive;
 use crate::wording::refused;
+use anergy_core::clock::Time;
 use anergy_core::ids::{EdgeId, SignalId};
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::interface::{Drive, Station};
@@ -124,6 +125,7 @@ impl Builder<'_> {
                 extraction_open,
                 participation,
                 drive,
+                longest_step: entry.longest_step_s.and_then(Time::from_s),
             });
         }
         drives

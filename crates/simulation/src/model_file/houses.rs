@@ -38,6 +38,9 @@ pub struct InterfaceEntry {
     /// Pause when the direction changes, s.
     #[serde(default)]
     pub dead_time_s: f64,
+    /// The longest step in which the controllers of its flow follow, s; a run with longer ones warns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_step_s: Option<f64>,
 }
 
 impl InterfaceEntry {
@@ -55,6 +58,7 @@ impl InterfaceEntry {
             feed_in_open: None,
             extraction_open: None,
             dead_time_s: 0.0,
+            longest_step_s: None,
         }
     }
 }

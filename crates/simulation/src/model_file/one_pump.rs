@@ -56,6 +56,7 @@ impl ProsumerEntry {
             feed_in_open: Some(names.inner("feed_in_way.opening")),
             extraction_open: Some(names.inner("extraction_way.opening")),
             dead_time_s: stroke_time_s,
+            longest_step_s: self.longest_step_s(control),
             ..InterfaceEntry::watching(names.id.clone())
         };
         Expanded { nodes, edges, interface, controllers: controller.into_iter().collect() }

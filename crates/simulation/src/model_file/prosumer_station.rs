@@ -189,6 +189,11 @@ fn ideal(
 }
 
 impl ProsumerEntry {
+    /// The longest step that its control follows, s.
+    pub(super) fn longest_step_s(&self, control: FlowControl) -> Option<f64> {
+        (control == FlowControl::Pi).then_some(LONGEST_STEP * self.integral_time_s)
+    }
+
     /// The parts of the station; `step_s` is the longest step of the run.
     pub(super) fn expand(
         &self,
@@ -314,6 +319,7 @@ impl ProsumerEntry {
             extraction_open: (extracts && shut_off)
                 .then(|| names.inner("extraction_shut_off.open")),
             dead_time_s: if control == FlowControl::Pi { self.dead_time_s } else { 0.0 },
+            longest_step_s: self.longest_step_s(control),
             id: names.id,
         };
         Expanded { nodes, edges, interface, controllers }

@@ -1,6 +1,7 @@
 //! Units, their ports and the circuits through them.
 
 use super::Plan;
+use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_network::interface::Drive;
 use anergy_prosumer::circuit::Circuit;
@@ -56,6 +57,8 @@ pub(crate) struct PlannedDrive {
     /// Share of what the unit wants that is asked for.
     pub participation: SignalId,
     pub drive: Drive,
+    /// The longest step that its controllers follow.
+    pub longest_step: Option<Time>,
 }
 
 /// A circuit of a house.

@@ -2,7 +2,9 @@
 
 use super::Simulation;
 use crate::error::RunError;
-use crate::plan::PlannedUnit;
+use crate::plan::{PlannedDrive, PlannedUnit};
+use anergy_core::clock::Time;
+use anergy_core::recorder::{Event, Severity};
 use anergy_core::signal::Signals;
 use anergy_prosumer::circuit::Undefined;
 use anergy_prosumer::thermal_unit::UnitPort;
@@ -123,6 +125,27 @@ impl Simulation {
             );
         }
         Ok(())
+    }
+
+    /// Warnings of stations whose control cannot follow steps of this length.
+    pub(crate) fn coarse_steps(&self, longest: Time) -> Vec<Event> {
+        let coarse =
+            |planned: &&PlannedDrive| planned.longest_step.is_some_and(|step| longest > step);
+        let warn = |planned: &PlannedDrive| {
+            let component = self.plan.station_names[planned.station].clone();
+            let follows = planned.longest_step.unwrap_or_default();
+            Event {
+                time: self.state.time,
+                severity: Severity::Warning,
+                kind: "coarse_step".into(),
+                message: format!(
+                    "{component}: the control of its flow follows steps up to {follows}, not {longest}: \
+                     write flow_control = \"quasi_steady\", or a shorter step in [run]"
+                ),
+                component,
+            }
+        };
+        self.plan.drives.iter().filter(coarse).map(warn).collect()
     }
 
     /// Units of houses show what they hold before the first step; nothing moves.
