@@ -97,6 +97,16 @@ enum Command {
         #[arg(long, value_name = "FILE", default_value = "report.html")]
         out: PathBuf,
     },
+    /// Write recorded results as CSV, units in the names of the columns
+    Export {
+        /// results.mcap of a run
+        results: PathBuf,
+        /// The table ("-" for standard output)
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        #[command(flatten)]
+        table: commands::export::CsvOptions,
+    },
 }
 
 #[derive(Debug, Subcommand)]
@@ -153,6 +163,7 @@ fn main() -> ExitCode {
             }
         },
         Command::Report { results, out } => commands::report::report(&results, &out),
+        Command::Export { results, out, table } => commands::export::csv(&results, &out, &table),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -202,6 +202,13 @@ fn a_killed_run_can_still_be_reported() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("warning"), "the user is told that the file is cut");
     assert!(!text(&output.stdout).starts_with("0 rows"), "{}", text(&output.stdout));
+    let output = anergy(&["export", "long/results.mcap", "--out", "killed.csv"], dir.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("cut off"), "{}", text(&output.stderr));
+    let table = std::fs::read_to_string(dir.path().join("killed.csv")).unwrap();
+    let columns = |line: &str| line.split(',').count();
+    let head = columns(table.lines().next().unwrap());
+    assert!(table.lines().count() > 2 && table.lines().all(|line| columns(line) == head));
 }
 
 #[test]
@@ -216,4 +223,61 @@ fn ctrl_c_leaves_a_complete_file() {
     assert_eq!(summary["interrupted"], true);
     let output = anergy(&["report", "long/results.mcap", "--out", "interrupted.html"], dir.path());
     assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+}
+
+#[test]
+fn exported_tables_have_units_in_their_columns() {
+    let dir = with_model(MODEL);
+    let run = ["run", "model.toml", "--until", "10min", "--record", "10s", "--out", "here"];
+    assert!(anergy(&run, dir.path()).status.success());
+    let export =
+        |more: &[&str]| anergy(&[&["export", "here/results.mcap"], more].concat(), dir.path());
+    let output = export(&["--out", "all.csv"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let all = text(&std::fs::read(dir.path().join("all.csv")).unwrap());
+    assert!(all.starts_with("time_s,") && all.contains("sf1.feed_in_pump.m_flow_kg_s"));
+    assert_eq!(all.lines().count(), 62);
+
+    let chosen = [
+        "--every",
+        "1min",
+        "--channels",
+        "sf1.hot.t_k",
+        "sf?.station.m_flow_kg_s",
+        "--units",
+        "degC",
+        "kg_h",
+    ];
+    let output = export(&[&["--out", "-"], &chosen[..]].concat());
+    let table = text(&output.stdout);
+    let mut lines = table.lines();
+    let head = lines.next().unwrap();
+    assert_eq!(
+        head,
+        "time_s,sf1.hot.t_degc,sf1.station.m_flow_kg_h,sf2.station.m_flow_kg_h,sf4.station.m_flow_kg_h"
+    );
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 11);
+    // 0.781 l/min of water of 1000 kg/m3.
+    assert!((rows[1][2] / 60.0 - 0.781).abs() < 2e-3, "{rows:?}");
+    assert!(rows.iter().all(|row| row[1] > 0.0 && row[1] < 100.0));
+
+    let wrong = export(&["--out", "x.csv", "--channels", "sf1.hot.tk"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(
+        text(&wrong.stderr).contains("did you mean \"sf1.hot.t_k\""),
+        "{}",
+        text(&wrong.stderr)
+    );
+    let wrong = export(&["--out", "no/such/x.csv"]);
+    assert_eq!(wrong.status.code(), Some(1));
+    assert!(text(&wrong.stderr).contains("there is no folder no/such"), "{}", text(&wrong.stderr));
+    let wrong = export(&["--out", "x.csv", "--every", "0s"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    if Path::new("/dev/full").exists() {
+        let full = export(&["--out", "/dev/full"]);
+        assert_eq!(full.status.code(), Some(1));
+        assert!(text(&full.stderr).contains("/dev/full"), "{}", text(&full.stderr));
+    }
 }

@@ -1,5 +1,5 @@
 //! Recordings of runs as MCAP files: [`McapRecorder`] writes one while the run goes on,
-//! [`read`] brings it back as columns.
+//! [`read`] brings it back as columns, [`write_csv`] makes a table of text of it.
 //!
 //! # The file
 //!
@@ -42,12 +42,15 @@
 //!
 //! A recording without any channel keeps no rows.
 
+mod csv_writer;
 mod format;
 mod layout;
 mod mcap_reader;
 mod mcap_writer;
+pub mod selection;
 #[cfg(test)]
 mod tests;
 
+pub use csv_writer::{CsvSize, write_csv};
 pub use mcap_reader::{ReadBack, read, read_from_bytes};
 pub use mcap_writer::McapRecorder;

@@ -1,10 +1,11 @@
 //! `anergy import`: networks of other programs as model files.
 
 use crate::failure::Failure;
-use crate::output::line;
+use crate::output::{self, line};
 use anergy_import::epanet::{self, EpanetOptions};
 use anergy_import::pandapipes::{self, Friction};
 use anergy_import::{Import, ImportError, NoteKind};
+use std::io::Write;
 use std::path::Path;
 
 /// Notes of one kind that are printed; the model file has all.
@@ -40,7 +41,8 @@ fn read(file: &Path) -> Result<Vec<u8>, Failure> {
 /// Writes the model file and says what it leaves out.
 fn write(file: &Path, out: &Path, result: Result<Import, Vec<ImportError>>) -> Result<(), Failure> {
     let import = result.map_err(|errors| Failure::Import { file: file.to_owned(), errors })?;
-    std::fs::write(out, &import.model)
+    output::create(out)?
+        .write_all(import.model.as_bytes())
         .map_err(|error| Failure::file("cannot write", out, &error))?;
     line!(
         "{}: {} nodes, {} edges, {} schedules from {}",

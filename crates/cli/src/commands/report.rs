@@ -1,7 +1,8 @@
 //! `anergy report`: recorded results as one HTML file.
 
 use crate::failure::Failure;
-use crate::output::line;
+use crate::output::{self, line};
+use std::io::Write;
 use std::path::Path;
 
 /// Makes the report of a results file.
@@ -10,8 +11,13 @@ pub fn report(results: &Path, out: &Path) -> Result<(), Failure> {
     if let Some(damage) = &read.damage {
         eprintln!("warning: {damage}");
     }
-    std::fs::write(out, anergy_report::html(&read.recording))
+    let html = anergy_report::html(&read.recording);
+    output::create(out)?
+        .write_all(html.as_bytes())
         .map_err(|error| Failure::file("cannot write", out, &error))?;
+    if out == Path::new("-") {
+        return Ok(());
+    }
     line!("{} rows reported in {}", read.recording.time_s.len(), out.display());
     Ok(())
 }
