@@ -5,6 +5,8 @@
 
 use allocation_counter::measure;
 use anergy_benches::two_pipe_network;
+use anergy_control::controller::{ControlError, Timing};
+use anergy_control::user_controller::UserController;
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_core::ids::SignalId;
 use anergy_network::elements::ElementParams;
@@ -80,6 +82,34 @@ fn demo_with_changing_pumps() {
     // SF2 at 85 %, as after its schedule, so that SF1 is not blocked.
     let pumps = [("sf1.feed_in_pump", 0.95), ("sf2.feed_in_pump", 0.85)];
     assert_no_allocation(&mut simulation(&demo()), &pumps, (100, 900), 1);
+}
+
+/// A controller of the user that moves its pump a little at every update.
+struct Sways;
+
+impl UserController for Sways {
+    fn timing(&self) -> Timing {
+        Timing { interval_s: 0.7, offset_s: 0.0 }
+    }
+
+    fn update(
+        &mut self,
+        _: f64,
+        measured: &[f64],
+        outputs: &mut [f64],
+    ) -> Result<(), ControlError> {
+        outputs[0] = 0.9 + measured[0].clamp(0.0, 0.1) * 0.1;
+        Ok(())
+    }
+}
+
+#[test]
+fn demo_with_a_controller_of_the_user() {
+    let mut simulation = simulation(&demo());
+    let flow = simulation.channel("sf1.feed_in_pump.m_flow_kg_s").unwrap();
+    let speed = simulation.signal("sf1.feed_in_pump.speed").unwrap();
+    simulation.add_controller("sways", Box::new(Sways), &[flow], &[speed]).unwrap();
+    assert_no_allocation(&mut simulation, &[("sf2.feed_in_pump", 0.85)], (100, 500), 1);
 }
 
 #[test]

@@ -143,6 +143,12 @@ pub enum ControlError {
         /// What does not fit.
         problem: String,
     },
+    /// A controller of the user cannot answer.
+    #[error("{problem}")]
+    User {
+        /// Its words.
+        problem: String,
+    },
     /// The measured value is not a number.
     #[error("the measured value is {measured}")]
     Measured {
@@ -156,7 +162,7 @@ impl ControlError {
     pub fn field(&self) -> Option<&'static str> {
         match self {
             Self::OutOfRange { field, .. } | Self::Fields { field, .. } => Some(field),
-            Self::Measured { .. } => None,
+            Self::Measured { .. } | Self::User { .. } => None,
         }
     }
 }

@@ -5,3 +5,4 @@ pub mod controllers;
 pub mod modulation;
 pub mod sensor;
 pub mod swing;
+pub mod user_controller;

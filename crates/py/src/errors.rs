@@ -132,6 +132,13 @@ pub fn run_error(py: Python<'_>, error: &SimulationError, text: &str, origin: &O
         E::OutOfRange { signal, value, min, max } => {
             python::OutOfRangeError::new_err((message, signal.clone(), *value, *min, *max))
         }
+        E::UserOutput { time, controller, signal, value, min, max } => {
+            let arguments = (message, signal.clone(), *value, *min, *max);
+            with(py, python::OutOfRangeError::new_err(arguments), |value| {
+                value.setattr("time", time)?;
+                value.setattr("component", controller)
+            })
+        }
         E::Snapshot { .. } => python::SnapshotError::new_err(message),
         E::Record(error) => record_error(py, error),
     }
@@ -165,6 +172,16 @@ pub fn overlay_error<'a>(error: &OverlayError, known: impl Iterator<Item = &'a s
 /// A name that does not exist, with the one that was probably meant: it begins with `name` or is
 /// the most similar.
 pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
+    unknown_to("", what, name, known)
+}
+
+/// The same with words before the message: who asks.
+pub fn unknown_to<'a>(
+    who: &str,
+    what: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> PyErr {
     let meant = known
         .map(|candidate| {
             let beginning = !name.is_empty() && candidate.starts_with(name);
@@ -175,7 +192,7 @@ pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>)
         })
         .min();
     let hint = meant.map_or(String::new(), |(_, _, best)| format!("; did you mean `{best}`?"));
-    let message = format!("there is no {what} \"{name}\"{hint}");
+    let message = format!("{who}there is no {what} \"{name}\"{hint}");
     python::UnknownNameError::new_err((message, name.to_owned()))
 }
 

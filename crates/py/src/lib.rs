@@ -3,8 +3,10 @@
 //! Conversions and errors at the edge, no physics and no file format. What needs another Python
 //! package (pandas, xarray, matplotlib) is in `python/anergy`.
 
+mod controller;
 mod convert;
 mod errors;
+mod handle;
 mod model;
 mod result;
 mod run;
@@ -21,11 +23,13 @@ mod _core {
     #[pymodule_export]
     use crate::errors::unknown_name;
     #[pymodule_export]
+    use crate::handle::{Handle, Handles};
+    #[pymodule_export]
     use crate::model::{Model, load_model};
     #[pymodule_export]
     use crate::result::{RunResult, load_result};
     #[pymodule_export]
-    use crate::simulation::{Handle, Simulation};
+    use crate::simulation::Simulation;
     #[pymodule_export]
     use crate::snapshot::Snapshot;
 

@@ -75,10 +75,7 @@ impl Model {
     /// directory : str or os.PathLike
     ///     Where files that it names are looked up.
     ///
-    /// Raises
-    /// ------
-    /// ModelError
-    ///     With all problems of the text, their lines and hints.
+    /// Raises ModelError with all problems of the text, their lines and hints.
     #[staticmethod]
     #[pyo3(signature = (text, directory = PathBuf::from(".")), text_signature = "(text, directory='.')")]
     fn from_toml(py: Python<'_>, text: &str, directory: PathBuf) -> PyResult<Self> {
@@ -123,10 +120,7 @@ impl Model {
     /// As it was written (names of series files included); after `set` or `scale` as plain nodes
     /// and edges, as `expand` gives.
     ///
-    /// Returns
-    /// -------
-    /// dict
-    ///     dicts, lists, str, float, int, bool.
+    /// Returns dicts, lists, str, float, int, bool.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         convert::to_python(py, &self.document(py)?)
     }
@@ -210,10 +204,7 @@ impl Model {
 
     /// Checks the whole model: names, values, signals, pressure references.
     ///
-    /// Raises
-    /// ------
-    /// ModelError
-    ///     With all problems, their lines and hints.
+    /// Raises ModelError with all problems, their lines and hints.
     fn check(&self, py: Python<'_>) -> PyResult<()> {
         self.plan(py).map(|_| ())
     }
@@ -274,10 +265,7 @@ impl Model {
     /// factor : float
     ///     1 changes nothing.
     ///
-    /// Raises
-    /// ------
-    /// UnknownNameError, ValueError
-    ///     As `set`.
+    /// Raises what `set` raises.
     fn scale(&self, parameter: &str, factor: f64) -> PyResult<Self> {
         if !factor.is_finite() {
             let message = format!("{parameter}: the factor {factor} is not a finite number");
@@ -325,6 +313,8 @@ impl Model {
     ///     Time between recorded rows, s.
     /// out : str or os.PathLike, optional
     ///     Directory to write results.mcap (while running) and summary.json into.
+    /// controllers : list of Controller, optional
+    ///     Your own; they take their signals over from schedules and controllers of the model.
     ///
     /// Returns
     /// -------
@@ -336,7 +326,8 @@ impl Model {
     /// ModelError
     ///     When the model is wrong.
     /// RunError
-    ///     When a step fails (ConvergenceError: its numerics); `.result` has the rows until then.
+    ///     When a step fails (ConvergenceError: its numerics); `.result` has the rows until then,
+    ///     as in exceptions of your controllers.
     /// Interrupted
     ///     After Ctrl-C, a KeyboardInterrupt; `.result` has the rows until then.
     /// OSError
@@ -348,7 +339,7 @@ impl Model {
     /// >>> result = anergy.examples.load("three-houses").simulate(until_s=600, record_s=60)
     /// >>> result["sf1.station.m_flow_kg_s"].shape
     /// (11,)
-    #[pyo3(signature = (until_s=None, step_s=None, record_s=None, out=None))]
+    #[pyo3(signature = (until_s=None, step_s=None, record_s=None, out=None, controllers=None))]
     fn simulate(
         &self,
         py: Python<'_>,
@@ -356,13 +347,14 @@ impl Model {
         step_s: Option<StepArgument>,
         record_s: Option<f64>,
         out: Option<PathBuf>,
+        controllers: Option<Vec<Bound<'_, PyAny>>>,
     ) -> PyResult<Py<RunResult>> {
         let options = RunOptions {
             until: until_s.map(|value| convert::time("until_s", value)).transpose()?,
             step: step_s.map(StepArgument::step).transpose()?,
             record: record_s.map(|value| convert::duration("record_s", value)).transpose()?,
         };
-        run::run(py, self.plan(py)?, options, out.as_deref())
+        run::run(py, self.plan(py)?, options, out.as_deref(), controllers)
     }
 
     /// A simulation to be stepped from outside: co-simulation, control, learning.
@@ -371,6 +363,8 @@ impl Model {
     /// ----------
     /// step_s : float or "auto", optional
     ///     What one `step()` advances, s; "auto": an automatic step. Absent: the model's `[run]`.
+    /// controllers : list of Controller, optional
+    ///     Your own; they take their signals over from schedules and controllers of the model.
     ///
     /// Raises
     /// ------
@@ -378,10 +372,15 @@ impl Model {
     ///     When the model is wrong.
     /// RunError
     ///     When its state at the start cannot be solved.
-    #[pyo3(signature = (step_s=None))]
-    fn simulation(&self, py: Python<'_>, step_s: Option<StepArgument>) -> PyResult<Simulation> {
+    #[pyo3(signature = (step_s=None, controllers=None))]
+    fn simulation(
+        &self,
+        py: Python<'_>,
+        step_s: Option<StepArgument>,
+        controllers: Option<Vec<Bound<'_, PyAny>>>,
+    ) -> PyResult<Simulation> {
         let step = step_s.map(StepArgument::step).transpose()?;
-        Simulation::new(py, self.plan(py)?, step)
+        Simulation::new(py, self.plan(py)?, step, controllers)
     }
 
     fn __repr__(&self) -> String {

@@ -1,5 +1,6 @@
 //! A whole run: into memory and, when wanted, into files; interruptible.
 
+use crate::controller::Controllers;
 use crate::errors::{self, Interrupted, Origin};
 use crate::result::RunResult;
 use anergy_core::clock::Time;
@@ -76,13 +77,19 @@ impl Recorder for Tee<'_> {
 
 /// Runs a plan to its end.
 ///
-/// Ctrl-C raises `Interrupted`, a failing step `RunError`; both have what was recorded until then.
+/// Ctrl-C raises `Interrupted`, a failing step `RunError`, a controller what it raised; all have what was
+/// recorded until then.
 pub fn run(
     py: Python<'_>,
     plan: Arc<Plan>,
     options: RunOptions,
     out: Option<&Path>,
+    controllers: Option<Vec<Bound<'_, PyAny>>>,
 ) -> PyResult<Py<RunResult>> {
+    let mut simulation = py
+        .detach(|| Simulation::new(plan))
+        .map_err(|error| errors::run_error(py, &error, "", &Origin::Text))?;
+    let raised = Controllers::attach(py, &mut simulation, controllers)?.raised;
     let file = match out {
         Some(folder) => Some(create(py, folder)?),
         None => None,
@@ -90,7 +97,6 @@ pub fn run(
     let mut memory = MemoryRecorder::default();
     let mut watch = SignalWatch::new();
     let outcome = py.detach(|| {
-        let mut simulation = Simulation::new(plan)?;
         let tee = Box::new(Tee { memory: &mut memory, file });
         anergy_simulation::run::run(&mut simulation, options, tee, &mut |_, _| watch.go_on())
     });
@@ -101,8 +107,11 @@ pub fn run(
     };
     let text = recording.header.model_text.clone();
     let result = Py::new(py, RunResult::new(recording, None))?;
-    if let Some(raised) = watch.into_raised() {
+    let by_controller = outcome.as_ref().err().and_then(|error| raised.take(py, error));
+    if let Some(raised) = watch.into_raised().or(by_controller) {
         if !raised.is_instance_of::<PyKeyboardInterrupt>(py) {
+            // Not every exception takes attributes.
+            let _ = raised.value(py).setattr("result", result);
             return Err(raised);
         }
         let message = "the run was interrupted; `.result` has what was recorded until then";

@@ -1,54 +1,24 @@
 //! `anergy.Simulation`: a simulation that Python steps.
 
+use crate::controller::Controllers;
 use crate::convert;
 use crate::errors::{self, Origin};
+use crate::handle::{Handle, Handles, Name};
 use crate::result::events;
 use crate::run::SignalWatch;
 use crate::snapshot::Snapshot;
 use anergy_core::clock::Time;
-use anergy_core::ids::{ChannelId, SignalId};
 use anergy_core::recorder::Event;
 use anergy_simulation::automatic_step::Step;
 use anergy_simulation::error::RunError;
 use anergy_simulation::model_file::StepEntry;
 use anergy_simulation::plan::Plan;
 use anergy_simulation::simulation;
-use pyo3::exceptions::PyValueError;
+use numpy::PyArray1;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyFloat, PyList};
 use std::sync::Arc;
-
-/// A name of a simulation, looked up once: `get` and `set` with it are faster.
-///
-/// Made by `Simulation.handle`.
-#[pyclass(module = "anergy", frozen)]
-pub struct Handle {
-    name: String,
-    /// The name of the channel: that of a signal has `_command` appended.
-    channel_name: String,
-    channel: ChannelId,
-    signal: Option<SignalId>,
-}
-
-#[pymethods]
-impl Handle {
-    /// What it stands for.
-    #[getter]
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<anergy.Handle \"{}\">", self.name)
-    }
-}
-
-/// A handle or a name.
-#[derive(FromPyObject)]
-enum Name<'py> {
-    Handle(Bound<'py, Handle>),
-    Text(String),
-}
 
 /// A simulation stepped from outside, made by `Model.simulation`.
 ///
@@ -67,15 +37,28 @@ enum Name<'py> {
 pub struct Simulation {
     simulation: simulation::Simulation,
     step: Step,
+    controllers: Controllers,
 }
 
 impl Simulation {
-    pub fn new(py: Python<'_>, plan: Arc<Plan>, step: Option<StepEntry>) -> PyResult<Self> {
+    pub fn new(
+        py: Python<'_>,
+        plan: Arc<Plan>,
+        step: Option<StepEntry>,
+        controllers: Option<Vec<Bound<'_, PyAny>>>,
+    ) -> PyResult<Self> {
         let step = plan.step_of(step);
-        match py.detach(|| simulation::Simulation::new(plan)) {
-            Ok(simulation) => Ok(Self { simulation, step }),
-            Err(error) => Err(failure(py, &error)),
-        }
+        let mut simulation = py
+            .detach(|| simulation::Simulation::new(plan))
+            .map_err(|error| errors::run_error(py, &error, "", &Origin::Dict))?;
+        let controllers = Controllers::attach(py, &mut simulation, controllers)?;
+        Ok(Self { simulation, step, controllers })
+    }
+
+    /// A failed step, or what a controller raised; the model was found right when the simulation was made.
+    fn failure(&self, py: Python<'_>, error: &RunError) -> PyErr {
+        let raised = self.controllers.raised.take(py, error);
+        raised.unwrap_or_else(|| errors::run_error(py, error, "", &Origin::Dict))
     }
 
     /// Advances from one multiple of the step to the next, looking for Ctrl-C.
@@ -96,7 +79,7 @@ impl Simulation {
             Ok(())
         });
         match (outcome, watch.into_raised()) {
-            (Err(error), _) => Err(failure(py, &error)),
+            (Err(error), _) => Err(self.failure(py, &error)),
             (Ok(()), Some(raised)) => Err(raised),
             (Ok(()), None) => Ok(()),
         }
@@ -116,59 +99,10 @@ impl Simulation {
             Ok(())
         });
         match (outcome, watch.into_raised()) {
-            (Err(error), _) => Err(failure(py, &error)),
+            (Err(error), _) => Err(self.failure(py, &error)),
             (Ok(()), Some(raised)) => Err(raised),
             (Ok(()), None) => Ok(()),
         }
-    }
-
-    /// A channel, or a signal by the channel of its command.
-    fn find_channel(&self, name: &str) -> Option<(String, ChannelId)> {
-        let command = || format!("{name}_command");
-        let found = self.simulation.channel(name).map(|id| (name.to_owned(), id));
-        found.or_else(|_| self.simulation.channel(&command()).map(|id| (command(), id))).ok()
-    }
-
-    fn channel(&self, name: &Name<'_>) -> PyResult<ChannelId> {
-        let text = match name {
-            Name::Text(text) => text.as_str(),
-            Name::Handle(handle) => {
-                let handle = handle.get();
-                let channels = self.simulation.plan().channels();
-                let own = channels.get(handle.channel.index());
-                if own.is_some_and(|channel| channel.name == handle.channel_name) {
-                    return Ok(handle.channel);
-                }
-                handle.name.as_str()
-            }
-        };
-        let unknown = || errors::unknown("channel or signal", text, self.names());
-        self.find_channel(text).map(|(_, id)| id).ok_or_else(unknown)
-    }
-
-    fn signal(&self, name: &Name<'_>) -> PyResult<SignalId> {
-        let specs = self.simulation.plan().signals().specs();
-        let text = match name {
-            Name::Text(text) => text.as_str(),
-            Name::Handle(handle) => {
-                let handle = handle.get();
-                if let Some(id) = handle.signal
-                    && specs.get(id.index()).is_some_and(|spec| spec.name == handle.name)
-                {
-                    return Ok(id);
-                }
-                handle.name.as_str()
-            }
-        };
-        let names = specs.iter().map(|spec| spec.name.as_str());
-        let found = self.simulation.plan().signals().find(text);
-        found.ok_or_else(|| errors::unknown("signal", text, names))
-    }
-
-    fn names(&self) -> impl Iterator<Item = &str> {
-        let plan = self.simulation.plan();
-        let channels = plan.channels().iter().map(|channel| channel.name.as_str());
-        channels.chain(plan.signals().specs().iter().map(|spec| spec.name.as_str()))
     }
 }
 
@@ -217,8 +151,9 @@ impl Simulation {
     /// ------
     /// UnknownNameError
     ///     A KeyError, with the most similar name.
-    fn limits(&self, name: Name<'_>) -> PyResult<(f64, f64)> {
-        let spec = self.simulation.plan().signals().spec(self.signal(&name)?);
+    fn limits(&self, name: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let id = Name::of(name)?.signal(&self.simulation)?;
+        let spec = self.simulation.plan().signals().spec(id);
         Ok((spec.min, spec.max))
     }
 
@@ -229,26 +164,67 @@ impl Simulation {
     /// UnknownNameError
     ///     A KeyError, with the most similar name.
     fn handle(&self, name: String) -> PyResult<Handle> {
-        let Some((channel_name, channel)) = self.find_channel(&name) else {
-            return Err(errors::unknown("channel or signal", &name, self.names()));
-        };
-        let signal = self.simulation.plan().signals().find(&name);
-        Ok(Handle { name, channel_name, channel, signal })
+        Handle::find(&self.simulation, name)
+    }
+
+    /// Looks up several channels or signals once: `get` and `set` then move an array.
+    ///
+    /// Parameters
+    /// ----------
+    /// names : sequence of str
+    ///     In the order that the values are to have.
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    ///     A KeyError, with the most similar name.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import anergy, numpy
+    /// >>> sim = anergy.examples.load("three-houses").simulation(step_s=1.0)
+    /// >>> speeds = sim.handles(["sf1.feed_in_pump.speed", "sf2.feed_in_pump.speed"])
+    /// >>> sim.set(speeds, [0.9, 0.8])
+    /// >>> sim.step(60)
+    /// >>> values = sim.get(speeds)
+    /// >>> values.tolist(), sim.get(speeds, out=values) is values
+    /// ([0.9, 0.8], True)
+    fn handles(&self, names: Vec<String>) -> PyResult<Handles> {
+        Handles::find(&self.simulation, names)
     }
 
     /// The present value of a channel, in the SI unit that its name ends with.
     ///
     /// Parameters
     /// ----------
-    /// name : str or Handle
+    /// name : str, Handle or Handles
     ///     One of `channels`; or one of `signals`, which gives its command.
+    /// out : numpy.ndarray, optional
+    ///     Where the values of `Handles` are written: float64, contiguous; it is returned.
+    ///
+    /// Returns
+    /// -------
+    /// float, or numpy.ndarray for Handles
     ///
     /// Raises
     /// ------
     /// UnknownNameError
     ///     A KeyError, with the most similar name.
-    fn get(&self, name: Name<'_>) -> PyResult<f64> {
-        Ok(self.simulation.get(self.channel(&name)?))
+    #[pyo3(signature = (name, out=None))]
+    fn get<'py>(
+        &self,
+        py: Python<'py>,
+        name: &Bound<'py, PyAny>,
+        out: Option<Bound<'py, PyArray1<f64>>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(handles) = name.cast::<Handles>() {
+            return Ok(handles.get().get(py, &self.simulation, out)?.into_any());
+        }
+        if out.is_some() {
+            return Err(PyTypeError::new_err("out is for Handles: one value is returned"));
+        }
+        let value = self.simulation.get(Name::of(name)?.channel(&self.simulation)?);
+        Ok(PyFloat::new(py, value).into_any())
     }
 
     /// Sets an input signal and takes it over from schedules and controllers.
@@ -257,10 +233,10 @@ impl Simulation {
     ///
     /// Parameters
     /// ----------
-    /// name : str or Handle
-    ///     One of `signals`.
-    /// value : float
-    ///     In SI.
+    /// name : str, Handle or Handles
+    ///     One of `signals`, or several.
+    /// value : float, or array_like for Handles
+    ///     In SI. Of several, all are set or, when one is out of range, none.
     ///
     /// Raises
     /// ------
@@ -268,9 +244,20 @@ impl Simulation {
     ///     A KeyError, with the most similar name.
     /// OutOfRangeError
     ///     A ValueError, for a value outside the limits of the signal.
-    fn set(&mut self, py: Python<'_>, name: Name<'_>, value: f64) -> PyResult<()> {
-        let id = self.signal(&name)?;
-        self.simulation.set(id, value).map_err(|error| failure(py, &error))
+    fn set(
+        &mut self,
+        py: Python<'_>,
+        name: &Bound<'_, PyAny>,
+        value: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let done = match name.cast::<Handles>() {
+            Ok(handles) => handles.get().set(&mut self.simulation, value)?,
+            Err(_) => {
+                let id = Name::of(name)?.signal(&self.simulation)?;
+                self.simulation.set(id, value.extract()?)
+            }
+        };
+        done.map_err(|error| self.failure(py, &error))
     }
 
     /// Gives a signal back to its schedule or controller; without one it keeps its value.
@@ -279,8 +266,8 @@ impl Simulation {
     /// ------
     /// UnknownNameError
     ///     A KeyError, with the most similar name.
-    fn release(&mut self, name: Name<'_>) -> PyResult<()> {
-        let id = self.signal(&name)?;
+    fn release(&mut self, name: &Bound<'_, PyAny>) -> PyResult<()> {
+        let id = Name::of(name)?.signal(&self.simulation)?;
         self.simulation.release(id);
         Ok(())
     }
@@ -328,7 +315,7 @@ impl Simulation {
         self.advance_to(py, target)
     }
 
-    /// Back to the start of the run.
+    /// Back to the start of the run; `start` of added controllers is called.
     ///
     /// Raises
     /// ------
@@ -336,7 +323,8 @@ impl Simulation {
     ///     When the state at the start cannot be solved.
     fn reset(&mut self, py: Python<'_>) -> PyResult<()> {
         let simulation = &mut self.simulation;
-        py.detach(|| simulation.reset()).map_err(|error| failure(py, &error))
+        let done = py.detach(|| simulation.reset());
+        done.map_err(|error| self.failure(py, &error))
     }
 
     /// Takes what happened since the last call: list of dicts, as `Result.events`.
@@ -345,9 +333,15 @@ impl Simulation {
         events(py, taken.iter())
     }
 
-    /// The present state, to be restored later.
-    fn snapshot(&self) -> Snapshot {
-        Snapshot { time: self.simulation.time(), state: self.simulation.snapshot() }
+    /// The present state, to be restored later, with what added controllers remember.
+    ///
+    /// Raises
+    /// ------
+    /// SnapshotError
+    ///     When an added controller has no `get_state` and `set_state`.
+    fn snapshot(&self, py: Python<'_>) -> PyResult<Snapshot> {
+        let (time, state) = (self.simulation.time(), self.simulation.snapshot());
+        Ok(Snapshot { time, state, controllers: self.controllers.state(py)? })
     }
 
     /// Continues from a snapshot, bit for bit.
@@ -355,17 +349,14 @@ impl Simulation {
     /// Raises
     /// ------
     /// SnapshotError
-    ///     A ValueError, when the snapshot is of another model.
+    ///     A ValueError, when the snapshot is of another model or of other controllers.
     fn restore(&mut self, py: Python<'_>, snapshot: &Snapshot) -> PyResult<()> {
-        self.simulation.restore(&snapshot.state).map_err(|error| failure(py, &error))
+        let done = self.simulation.restore(&snapshot.state);
+        done.map_err(|error| self.failure(py, &error))?;
+        self.controllers.restore(py, snapshot.controllers.as_deref())
     }
 
     fn __repr__(&self) -> String {
         format!("<anergy.Simulation at {} s, step {}>", self.time_s(), self.step)
     }
-}
-
-/// A failed step; the model was found right when the simulation was made.
-fn failure(py: Python<'_>, error: &RunError) -> PyErr {
-    errors::run_error(py, error, "", &Origin::Dict)
 }

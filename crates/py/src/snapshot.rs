@@ -18,12 +18,15 @@ fn checksum(bytes: &[u8]) -> [u8; 8] {
 
 /// The state of a simulation at one time; can be pickled and compared.
 ///
-/// Made by `Simulation.snapshot`; restoring it continues bit for bit.
+/// Made by `Simulation.snapshot`; restoring it continues bit for bit. What added controllers remember is in
+/// it as a pickle: as with any pickle, restore only what you trust.
 #[pyclass(module = "anergy", frozen, eq)]
 #[derive(PartialEq)]
 pub struct Snapshot {
     pub time: Time,
     pub state: State,
+    /// What added controllers remember, pickled.
+    pub controllers: Option<Vec<u8>>,
 }
 
 #[pymethods]
@@ -47,14 +50,14 @@ impl Snapshot {
         if *sum != checksum(payload) {
             return Err(wrong("its bytes were changed"));
         }
-        let (time, state) =
+        let (time, state, controllers) =
             postcard::from_bytes(payload).map_err(|error| wrong(&error.to_string()))?;
-        Ok(Self { time, state })
+        Ok(Self { time, state, controllers })
     }
 
     /// The snapshot as bytes, for files and other processes.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let payload = postcard::to_allocvec(&(self.time, &self.state))
+        let payload = postcard::to_allocvec(&(self.time, &self.state, &self.controllers))
             .map_err(|error| SnapshotError::new_err(error.to_string()))?;
         let bytes = [SNAPSHOT_MARK.as_bytes(), &checksum(&payload), &payload].concat();
         Ok(PyBytes::new(py, &bytes))

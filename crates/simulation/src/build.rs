@@ -328,6 +328,8 @@ impl Builder<'_> {
             controller_states: Vec::new(),
             next_tick: Vec::new(),
             last_tick: Vec::new(),
+            user_ticks: Vec::new(),
+            user_overruled: Vec::new(),
             electric_j: 0.0,
             units_j: 0.0,
             units_electric_j: 0.0,

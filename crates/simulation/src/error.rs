@@ -142,6 +142,24 @@ pub enum RunError {
         #[source]
         source: anergy_control::controller::ControlError,
     },
+    /// A controller of the user gave a value that its signal cannot have.
+    #[error(
+        "at {time}: controller \"{controller}\" gives {signal} = {value}, which is outside {min} to {max}"
+    )]
+    UserOutput {
+        /// Simulated time.
+        time: String,
+        /// The controller.
+        controller: String,
+        /// The signal.
+        signal: String,
+        /// What it gave.
+        value: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
     /// The steady state was not found.
     #[error("the steady state was not found after {iterations} rounds: {culprit}")]
     NotSettled {

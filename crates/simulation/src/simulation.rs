@@ -12,6 +12,7 @@ mod pulses;
 mod saturation;
 mod stations;
 mod stepping;
+mod users;
 mod validity;
 mod words;
 
@@ -39,6 +40,7 @@ pub(crate) use saturation::{Missed, missed_now};
 pub(crate) use stations::BlockedSpan;
 use std::sync::Arc;
 use stepping::Stepper;
+use users::AddedController;
 pub use words::Unreached;
 pub(crate) use words::named;
 use words::prescribed_event;
@@ -61,6 +63,8 @@ pub struct Simulation {
     outdoors: Option<Interval>,
     desk: Desk,
     stepper: Stepper,
+    /// Controllers of the user, in the order in which they were added.
+    users: Vec<AddedController>,
 }
 
 impl Simulation {
@@ -85,6 +89,7 @@ impl Simulation {
             outdoors: None,
             desk: Desk::new(&plan),
             stepper: Stepper::new(&plan),
+            users: Vec::new(),
             plan,
         };
         simulation.begin()?;
@@ -95,11 +100,12 @@ impl Simulation {
     /// hydraulics solved, all water at its initial temperature.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// As [`Self::new`]; those of controllers of the user when they begin anew.
     pub fn reset(&mut self) -> Result<(), RunError> {
         self.state = self.plan.initial_state();
         self.events.clear();
-        self.begin()
+        self.begin()?;
+        self.start_users()
     }
 
     /// From the initial state to the start of the run.
@@ -140,6 +146,7 @@ impl Simulation {
     ) -> Result<(), RunError> {
         let now = self.state.time;
         self.control(now)?;
+        self.control_users(now)?;
         let end = match automatic {
             None => self.flow_until(now, latest.0)?,
             Some(limits) => self.flow_within(now, latest, limits)?,

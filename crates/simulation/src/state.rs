@@ -68,6 +68,10 @@ pub struct State {
     pub(crate) controller_states: Vec<f64>,
     pub(crate) next_tick: Vec<Time>,
     pub(crate) last_tick: Vec<Time>,
+    /// Next update of each controller of the user.
+    pub(crate) user_ticks: Vec<Time>,
+    /// Signals of those controllers that were set by hand since, one after the other.
+    pub(crate) user_overruled: Vec<bool>,
     pub(crate) electric_j: f64,
     pub(crate) units_j: f64,
     /// Electricity that the units drew.
@@ -122,6 +126,8 @@ impl State {
             + heap(&self.controller_states)
             + heap(&self.next_tick)
             + heap(&self.last_tick)
+            + heap(&self.user_ticks)
+            + heap(&self.user_overruled)
             + heap(&self.pipes)
             + self.stepping.heap_bytes()
     }

@@ -16,6 +16,7 @@ simulation to be stepped from outside. All quantities are in SI, their names end
 from anergy import examples
 from anergy._core import (
     Handle,
+    Handles,
     Model,
     Result,
     Simulation,
@@ -23,6 +24,7 @@ from anergy._core import (
     __version__,
     schema,
 )
+from anergy.controller import Controller
 from anergy.errors import (
     AnergyError,
     ConvergenceError,
@@ -40,8 +42,10 @@ from anergy.steady import Steady, Table
 __all__ = [
     "AnergyError",
     "BlockingMap",
+    "Controller",
     "ConvergenceError",
     "Handle",
+    "Handles",
     "Interrupted",
     "Mode",
     "Model",

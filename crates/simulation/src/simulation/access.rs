@@ -37,12 +37,15 @@ impl Simulation {
         }
         self.state.signals[id.index()] = value;
         self.state.taken_over[id.index()] = true;
+        self.overrule_user(id, true);
         Ok(())
     }
 
-    /// Gives a signal back to its schedule or controller.
+    /// Gives a signal back to its schedule or controller; to that of the user, where there is one.
     pub fn release(&mut self, id: SignalId) {
-        self.state.taken_over[id.index()] = false;
+        if !self.overrule_user(id, false) {
+            self.state.taken_over[id.index()] = false;
+        }
         self.state.stepping.forget();
     }
 
@@ -73,7 +76,7 @@ impl Simulation {
         }
     }
 
-    /// The state as a snapshot.
+    /// The state as a snapshot. What controllers of the user remember is theirs to keep.
     pub fn snapshot(&self) -> State {
         self.state.clone()
     }
@@ -106,6 +109,13 @@ impl Simulation {
             && own.missed.len() == other.missed.len()
             && own.crossed.len() == other.crossed.len()
             && own.stepping.fits(&other.stepping);
+        if (own.user_ticks.len(), own.user_overruled.len())
+            != (other.user_ticks.len(), other.user_overruled.len())
+        {
+            let (own, other) = (own.user_ticks.len(), other.user_ticks.len());
+            let problem = format!("it has {other} controllers of the user, the simulation {own}");
+            return Err(RunError::Snapshot { problem });
+        }
         if !fits {
             return Err(RunError::Snapshot { problem: "it is of another model".into() });
         }

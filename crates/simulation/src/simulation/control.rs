@@ -11,8 +11,8 @@ use anergy_core::clock::Time;
 /// Work space of the controllers; holds nothing that a result depends on.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
-    measured: Vec<f64>,
-    outputs: Vec<f64>,
+    pub(super) measured: Vec<f64>,
+    pub(super) outputs: Vec<f64>,
 }
 
 impl Desk {
@@ -21,6 +21,12 @@ impl Desk {
             vec![0.0; plan.controllers.iter().map(len).max().unwrap_or(0)]
         };
         Self { measured: most(|c| c.measures.len()), outputs: most(|c| c.acts_on.len()) }
+    }
+
+    /// Room for one more controller.
+    pub(super) fn make_room(&mut self, measures: usize, acts_on: usize) {
+        self.measured.reserve(measures);
+        self.outputs.reserve(acts_on);
     }
 }
 

@@ -156,6 +156,9 @@ impl Simulation {
                 limit(next.max(Time(now.0 + 1)), Limit::Update);
             }
         }
+        for (user, next) in self.users.iter().zip(&self.state.user_ticks) {
+            limit(if *next <= now { *next + user.interval } else { *next }, Limit::Update);
+        }
         end
     }
 
