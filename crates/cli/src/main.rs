@@ -97,15 +97,18 @@ enum Command {
         #[arg(long, value_name = "FILE", default_value = "report.html")]
         out: PathBuf,
     },
-    /// Write recorded results as CSV, units in the names of the columns
+    /// Write recorded results as CSV, units in the names of the columns; or the network of a model as GeoJSON
     Export {
-        /// results.mcap of a run
-        results: PathBuf,
-        /// The table ("-" for standard output)
+        /// results.mcap of a run, or a model file
+        input: PathBuf,
+        /// The table (.csv, "-" for standard output), or the network (.geojson)
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
         #[command(flatten)]
         table: commands::export::CsvOptions,
+        /// Network: where x_m = 0, y_m = 0 of the model lies, deg (default: as [model] says)
+        #[arg(long, num_args = 2, value_names = ["LATITUDE", "LONGITUDE"], allow_negative_numbers = true)]
+        origin: Option<Vec<f64>>,
     },
 }
 
@@ -125,6 +128,16 @@ enum ImportFormat {
         /// work against each other
         #[arg(long)]
         self_acting: bool,
+    },
+    /// Points and lines of a geographic information system (GeoJSON, longitude and latitude)
+    Geojson {
+        /// Network (.geojson)
+        file: PathBuf,
+        /// The model file
+        #[arg(long, value_name = "MODEL")]
+        out: PathBuf,
+        #[command(flatten)]
+        options: commands::import::GeojsonArguments,
     },
     /// A net of pandapipes.to_json (water); lists what the model does not say
     Pandapipes {
@@ -158,12 +171,17 @@ fn main() -> ExitCode {
             ImportFormat::Epanet { file, out, steady, self_acting } => {
                 commands::import::epanet(&file, &out, EpanetOptions { steady, self_acting })
             }
+            ImportFormat::Geojson { file, out, options } => {
+                commands::import::geojson(&file, &out, options)
+            }
             ImportFormat::Pandapipes { file, out, friction } => {
                 commands::import::pandapipes(&file, &out, friction)
             }
         },
         Command::Report { results, out } => commands::report::report(&results, &out),
-        Command::Export { results, out, table } => commands::export::csv(&results, &out, &table),
+        Command::Export { input, out, table, origin } => {
+            commands::export::export(&input, &out, &table, origin.as_deref())
+        }
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

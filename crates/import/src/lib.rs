@@ -1,9 +1,11 @@
-//! Networks of other programs as model files: EPANET input files and pandapipes nets.
+//! Networks of other programs as model files: EPANET input files, pandapipes nets, GeoJSON of geographic
+//! information systems (also out again).
 //!
 //! An import reads text and gives text, a valid model file, together with the list of everything in the
 //! original that the model does not say or says otherwise. Nothing is dropped without an entry in it.
 
 pub mod epanet;
+pub mod geojson;
 mod model_text;
 pub mod pandapipes;
 

@@ -88,8 +88,8 @@ impl ModelText {
         model.push_str(&self.body);
         let count = |header: &str| self.body.matches(header).count();
         Import {
-            nodes: count("\n[[node]]\n"),
-            edges: count("\n[[edge]]\n"),
+            nodes: count("\n[[node]]\n") + count("\n[[site]]\n"),
+            edges: count("\n[[edge]]\n") + count("\n[[trench]]\n"),
             schedules: self.schedules,
             model,
             notes: self.notes,
@@ -132,7 +132,8 @@ impl Entry<'_> {
         self.raw(key, &list(&values))
     }
 
-    fn raw(self, key: &str, value: &str) -> Self {
+    /// A field with a value as TOML writes it.
+    pub fn raw(self, key: &str, value: &str) -> Self {
         // Writing to a string does not fail.
         let _ = writeln!(self.text, "{key} = {value}");
         self
@@ -160,14 +161,14 @@ fn list(items: &[String]) -> String {
     text
 }
 
-fn unused(taken: &HashSet<String>, wanted: &str) -> String {
+pub(crate) fn unused(taken: &HashSet<String>, wanted: &str) -> String {
     let numbered = (2..).map(|i| format!("{wanted}_{i}"));
     let mut candidates = std::iter::once(wanted.to_owned()).chain(numbered);
     candidates.find(|id| !taken.contains(id)).unwrap_or_default()
 }
 
 /// A basic string of TOML.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {

@@ -252,6 +252,7 @@ impl Builder<'_> {
             model_name: model.name.clone(),
             model_text: model.text.clone(),
             start_unix_ns: start_unix_ns(model),
+            origin_rad: model.origin_rad,
             step: steps.0.shortest(),
             stepping: steps.0,
             automatic: AutomaticStep::of(&self.model.run),

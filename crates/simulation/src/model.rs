@@ -204,6 +204,8 @@ pub struct Model {
     pub thermosiphon: bool,
     /// Whether friction warms the water.
     pub dissipation: bool,
+    /// Latitude and longitude of the origin of the map, rad.
+    pub origin_rad: Option<[f64; 2]>,
     /// What the pipes lie in.
     pub ground: GroundEntry,
     /// Where it stands.

@@ -58,6 +58,35 @@ pub struct ModelEntry {
     /// Whether the hydraulic power that an edge takes from the water warms it: friction.
     #[serde(default)]
     pub dissipation: bool,
+    /// Where x_m = 0 and y_m = 0 lie on the earth (WGS84): latitude, north positive, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub latitude_rad: Option<f64>,
+    /// The longitude of that place, east positive, rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longitude_rad: Option<f64>,
+}
+
+impl ModelEntry {
+    /// Latitude and longitude of the origin of the map, rad, or what is wrong with them.
+    pub(crate) fn origin_rad(&self) -> Result<Option<[f64; 2]>, (&'static str, String)> {
+        let (latitude, longitude) = match (self.latitude_rad, self.longitude_rad) {
+            (None, None) => return Ok(None),
+            (Some(latitude), Some(longitude)) => (latitude, longitude),
+            (Some(_), None) => return Err(("latitude_rad", "latitude needs a longitude".into())),
+            (None, Some(_)) => return Err(("longitude_rad", "longitude needs a latitude".into())),
+        };
+        for (field, value, most_deg) in
+            [("latitude_rad", latitude, 89.9), ("longitude_rad", longitude, 180.0)]
+        {
+            let name = field.trim_end_matches("_rad");
+            let deg = value.to_degrees();
+            if !(deg.abs() <= most_deg) {
+                let message = format!("{name} of {deg:.6} deg is not within {most_deg} deg");
+                return Err((field, message));
+            }
+        }
+        Ok(Some([latitude, longitude]))
+    }
 }
 
 fn untitled() -> String {

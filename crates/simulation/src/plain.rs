@@ -24,6 +24,10 @@ impl Model {
         if self.dissipation {
             about["dissipation"] = json!(true);
         }
+        if let Some([latitude, longitude]) = self.origin_rad {
+            about["latitude_rad"] = json!(latitude);
+            about["longitude_rad"] = json!(longitude);
+        }
         file.insert("model".into(), about);
         file.insert("run".into(), without_nulls(json!(self.run)));
         file.insert("fluid".into(), FluidEntry::of(&self.medium, self.follow_temperature));

@@ -244,6 +244,8 @@ pub struct Plan {
     pub(crate) model_name: String,
     pub(crate) model_text: Arc<str>,
     pub(crate) start_unix_ns: i64,
+    /// Latitude and longitude of the origin of the map, rad.
+    pub(crate) origin_rad: Option<[f64; 2]>,
     /// Largest fixed step, or shortest automatic one.
     pub(crate) step: Time,
     pub(crate) stepping: Step,

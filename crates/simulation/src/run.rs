@@ -85,18 +85,25 @@ pub fn run(
 
 fn header(plan: &crate::plan::Plan, until: Time, step: Step, record: Time) -> RunHeader {
     let setting = |name: &str, value: String| (name.to_owned(), value);
+    let origin = plan.origin_rad.into_iter().flat_map(|[latitude, longitude]| {
+        let deg = |rad: f64| rad.to_degrees().to_string();
+        [setting("latitude_deg", deg(latitude)), setting("longitude_deg", deg(longitude))]
+    });
     RunHeader {
         model_name: plan.model_name.clone(),
         model_text: plan.model_text.to_string(),
         start_unix_ns: plan.start_unix_ns,
-        settings: vec![
+        settings: [
             setting("program", format!("anergy {}", env!("CARGO_PKG_VERSION"))),
             setting("until", until.to_string()),
             setting("step", step.to_string()),
             setting("record", record.to_string()),
             setting("density_kg_m3", plan.network.medium.density_kg_m3.to_string()),
             setting("heat_capacity_j_kg_k", plan.network.medium.heat_capacity_j_kg_k.to_string()),
-        ],
+        ]
+        .into_iter()
+        .chain(origin)
+        .collect(),
         map: plan.map(),
     }
 }

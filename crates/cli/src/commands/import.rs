@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::output::{self, line};
 use anergy_import::epanet::{self, EpanetOptions};
+use anergy_import::geojson::{self, GeojsonOptions};
 use anergy_import::pandapipes::{self, Friction};
 use anergy_import::{Import, ImportError, NoteKind};
 use std::io::Write;
@@ -14,6 +15,33 @@ const PRINTED: usize = 20;
 /// Imports an EPANET input file.
 pub fn epanet(file: &Path, out: &Path, wanted: EpanetOptions) -> Result<(), Failure> {
     write(file, out, epanet::import(&read(file)?, wanted))
+}
+
+/// How a GeoJSON network is read.
+#[derive(Debug, clap::Args)]
+pub struct GeojsonArguments {
+    /// Ends of lines and points closer than this are one node, m
+    #[arg(long, value_name = "METRES", default_value_t = 0.5)]
+    snap: f64,
+    /// Leave out the nodes that only join two equal pipes; the lengths add up
+    #[arg(long)]
+    simplify: bool,
+    /// Type of the pipes that say neither type nor diameter, for example "steel DN50"
+    #[arg(long, value_name = "TYPE")]
+    pipe: Option<String>,
+    /// Lines are trenches with supply and return, points are sites
+    #[arg(long)]
+    trenches: bool,
+}
+
+/// Imports a GeoJSON network.
+pub fn geojson(file: &Path, out: &Path, wanted: GeojsonArguments) -> Result<(), Failure> {
+    let GeojsonArguments { snap, simplify, pipe, trenches } = wanted;
+    if !(0.0..=1e5).contains(&snap) {
+        return Err(Failure::Usage(format!("--snap: {snap} m is no tolerance")));
+    }
+    let options = GeojsonOptions { snap_m: snap, simplify, pipe, trenches };
+    write(file, out, geojson::import(&read(file)?, &options))
 }
 
 /// Friction laws of pandapipes.

@@ -153,6 +153,14 @@ impl ModelReader<'_> {
             let problem = refused("[model]", place, Some("gravity"), &message);
             self.reader.report(problem.with_hint("9.81 pulls down: elevations count upwards"));
         }
+        if let Some((about, place)) = &about
+            && let Err((field, message)) = about.origin_rad()
+        {
+            let problem = refused("[model]", place, Some(field), &message);
+            let hint = "together they say where x_m = 0, y_m = 0 lies, for example latitude_deg = 48.14 and \
+                        longitude_deg = 11.58";
+            self.reader.report(problem.with_hint(hint));
+        }
         if let Some((run, place)) = &run {
             self.longest_step_s = run.longest_step_s();
             let water = self.water();
@@ -222,7 +230,8 @@ impl ModelReader<'_> {
             name: about.as_ref()?.0.name.clone(),
             gravity_m_s2: about.as_ref()?.0.gravity,
             dissipation: about.as_ref()?.0.dissipation,
-            thermosiphon: about?.0.thermosiphon,
+            thermosiphon: about.as_ref()?.0.thermosiphon,
+            origin_rad: about?.0.origin_rad().ok().flatten(),
             run: run?.0,
             medium: medium?,
             follow_temperature: fluid?.0.follow_temperature,
