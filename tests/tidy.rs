@@ -17,7 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("control", &["core"]),
     ("recording", &["core"]),
     ("report", &["core"]),
-    ("import", &[]),
+    ("import", &["core"]),
     ("ems", &["core", "prosumer", "control"]),
     ("simulation", &["core", "network", "prosumer", "control", "ems"]),
     ("discrepancy", &["core", "simulation", "recording"]),
@@ -353,7 +353,7 @@ fn dependencies_point_downwards() {
     }
     none(
         &findings,
-        "core <- network, prosumer, control, recording, report <- simulation <- cli, py",
+        "core <- network, prosumer, control, recording, report, import <- simulation <- cli, py",
     );
 }
 

@@ -80,7 +80,7 @@ impl ModelEntry {
         {
             let name = field.trim_end_matches("_rad");
             let deg = value.to_degrees();
-            if !(deg.abs() <= most_deg) {
+            if deg.is_nan() || deg.abs() > most_deg {
                 let message = format!("{name} of {deg:.6} deg is not within {most_deg} deg");
                 return Err((field, message));
             }

@@ -236,7 +236,7 @@ fn own(
     id: Option<String>,
     word: &str,
 ) -> String {
-    let wanted = id.clone().unwrap_or_else(|| format!("{word}{}", taken.len() + 1));
+    let wanted = id.unwrap_or_else(|| format!("{word}{}", taken.len() + 1));
     let id = crate::model_text::unused(taken, &wanted);
     if id != wanted {
         renamed.push(format!("\"{wanted}\" is \"{id}\""));

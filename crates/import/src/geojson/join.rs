@@ -93,10 +93,8 @@ fn ends(network: &mut Network, plane: Option<Plane>, reach_m: f64) -> Result<(),
             let places = [line.path.first().copied(), line.path.last().copied()];
             for (end, at) in line.ends.iter_mut().zip(places) {
                 match (end.as_ref(), at) {
-                    (Some(id), at) if named => {
-                        if known.insert(id.clone()) {
-                            new(id.clone(), at, &mut grid);
-                        }
+                    (Some(id), at) if named && known.insert(id.clone()) => {
+                        new(id.clone(), at, &mut grid);
                     }
                     (None, Some(at)) if !named => {
                         *end = Some(match grid.nearest(at) {

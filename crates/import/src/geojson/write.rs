@@ -77,7 +77,8 @@ fn node(
     };
     let placed = point.at.is_some();
     let fields = point.fields.iter().filter(|(name, _)| {
-        !(placed && ["x_m", "y_m"].contains(&name.as_str())) && !(site && name == "kind")
+        let written = placed && ["x_m", "y_m"].contains(&name.as_str());
+        !(written || site && name == "kind")
     });
     fields_of(entry, fields, &point.id)
 }
