@@ -1,6 +1,6 @@
 """Thermo-hydraulic simulation of district heating and cooling networks with prosumers.
 
-A model file becomes a `Model`; `solve` gives its steady state, `simulate` a run, `simulation` a
+A model file, or a `Grid` built in Python, becomes a `Model`; `solve` gives its steady state, `simulate` a run, `simulation` a
 simulation to be stepped from outside. All quantities are in SI, their names end with their units.
 
 >>> import anergy
@@ -12,6 +12,8 @@ simulation to be stepped from outside. All quantities are in SI, their names end
 >>> result.events[0]["message"].partition(";")[0]
 'sf1.station is blocked: it delivers 0.78 of 3.50 l/min wanted'
 """
+
+from typing import TYPE_CHECKING, Any
 
 from anergy import examples
 from anergy._core import (
@@ -39,11 +41,15 @@ from anergy.errors import (
 from anergy.stability import BlockingMap, Mode, Stability
 from anergy.steady import Steady, Table
 
+if TYPE_CHECKING:
+    from anergy.grid import Grid
+
 __all__ = [
     "AnergyError",
     "BlockingMap",
     "Controller",
     "ConvergenceError",
+    "Grid",
     "Handle",
     "Handles",
     "Interrupted",
@@ -65,3 +71,12 @@ __all__ = [
     "examples",
     "schema",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # Its methods are made from the schema, which takes longer than the rest of the package.
+    if name == "Grid":
+        from anergy.grid import Grid
+
+        return Grid
+    raise AttributeError(f"module 'anergy' has no attribute {name!r}")

@@ -45,7 +45,7 @@ def model_html(model: Model) -> str:
     """A model in a notebook."""
     parts = ("stations", "units", "controllers", "nodes", "edges")
     rows = [(part, len(getattr(model, part))) for part in parts]
-    return _html(model.name, rows)
+    return rows_html(model.name, rows)
 
 
 def result_html(result: Result) -> str:
@@ -57,7 +57,7 @@ def result_html(result: Result) -> str:
         ("events", len(result.events)),
     ]
     rows += [(name, f"{value:.4g}") for name, value in _key_results(result).items()]
-    return _html(result.model_name, rows)
+    return rows_html(result.model_name, rows)
 
 
 def table_text(table: Mapping[str, npt.NDArray[Any]]) -> str:
@@ -97,7 +97,8 @@ def _cell(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)
 
 
-def _html(title: str, rows: Iterable[tuple[str, Any]]) -> str:
+def rows_html(title: str, rows: Iterable[tuple[str, Any]]) -> str:
+    """Names and values in a notebook."""
     body = "".join(
         f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(value))}</td></tr>"
         for name, value in rows
