@@ -44,7 +44,8 @@ const WRAPPED: &[(&str, &str)] = &[
     ("faer", "core"),
     ("clarabel", "ems"),
     ("mcap", "recording"),
-    ("arrow", "recording"),
+    ("arrow-array", "py"),
+    ("arrow-schema", "py"),
     ("pyo3", "py"),
     ("numpy", "py"),
 ];

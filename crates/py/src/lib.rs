@@ -3,11 +3,14 @@
 //! Conversions and errors at the edge, no physics and no file format. What needs another Python
 //! package (pandas, xarray, matplotlib) is in `python/anergy`.
 
+mod arrow;
 mod controller;
 mod convert;
 mod errors;
 mod handle;
+mod map;
 mod model;
+mod plots;
 mod result;
 mod run;
 mod simulation;

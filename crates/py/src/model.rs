@@ -32,7 +32,7 @@ use std::path::{Path, PathBuf};
 /// <anergy.Model "three houses: pump blocking": 17 nodes, 18 edges>
 #[pyclass(module = "anergy", frozen)]
 pub struct Model {
-    model: model::Model,
+    pub(crate) model: model::Model,
     origin: Origin,
     /// Where the files it names are looked up.
     directory: PathBuf,
@@ -294,11 +294,12 @@ impl Model {
     /// >>> steady = anergy.examples.load("three-houses").solve()
     /// >>> round(60 * steady["sf2.feed_in_pump"]["m_flow_kg_s"], 2)  # l/min
     /// 7.92
-    fn solve<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let solved = py.detach(|| anergy_simulation::steady::solve(&self.model));
+    fn solve<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, this) = (slf.py(), slf.get());
+        let solved = py.detach(|| anergy_simulation::steady::solve(&this.model));
         let solved = solved
-            .map_err(|error| errors::run_error(py, &error, &self.model.text, &self.origin))?;
-        steady::to_python(py, &solved)
+            .map_err(|error| errors::run_error(py, &error, &this.model.text, &this.origin))?;
+        steady::to_python(py, &solved, slf)
     }
 
     /// Simulates from the start; other Python threads run meanwhile.

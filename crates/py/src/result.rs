@@ -27,7 +27,7 @@ use std::path::PathBuf;
 /// True
 #[pyclass(module = "anergy", name = "Result", frozen)]
 pub struct RunResult {
-    recording: Recording,
+    pub(crate) recording: Recording,
     damage: Option<String>,
     index: HashMap<String, usize>,
 }
@@ -226,6 +226,31 @@ impl RunResult {
         channels: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         python(slf.py(), "anergy._export", "result_to_xarray")?.call1((slf, channels))
+    }
+
+    /// Writes the results as a Parquet file: `time_s`, then a column per channel with its unit as metadata.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     The file; an existing one is replaced.
+    /// channels : list of str, optional
+    ///     Only these.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     Without pyarrow: `pip install anergy[parquet]`.
+    /// UnknownNameError
+    ///     For a channel that does not exist.
+    #[pyo3(signature = (path, channels=None))]
+    fn to_parquet(
+        slf: &Bound<'_, Self>,
+        path: PathBuf,
+        channels: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        python(slf.py(), "anergy._export", "result_to_parquet")?.call1((slf, path, channels))?;
+        Ok(())
     }
 
     /// Plots channels over time with matplotlib, shaded where their components are blocked or swing.

@@ -1,12 +1,17 @@
 //! The steady state as tables.
 
+use crate::model::Model;
 use anergy_simulation::steady::Steady;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// The `anergy.steady.Steady` of a steady state.
-pub fn to_python<'py>(py: Python<'py>, steady: &Steady) -> PyResult<Bound<'py, PyAny>> {
+pub fn to_python<'py>(
+    py: Python<'py>,
+    steady: &Steady,
+    model: &Bound<'py, Model>,
+) -> PyResult<Bound<'py, PyAny>> {
     let nodes = PyDict::new(py);
     let column =
         |value: &dyn Fn(usize) -> f64, rows: usize| PyArray1::from_iter(py, (0..rows).map(value));
@@ -25,5 +30,5 @@ pub fn to_python<'py>(py: Python<'py>, steady: &Steady) -> PyResult<Bound<'py, P
     let module = py.import("anergy.steady")?;
     let table = module.getattr("Table")?;
     let (nodes, edges) = (table.call1((nodes,))?, table.call1((edges,))?);
-    module.getattr("Steady")?.call1((nodes, edges, steady.iterations, steady.residual_pa))
+    module.getattr("Steady")?.call1((nodes, edges, steady.iterations, steady.residual_pa, model))
 }

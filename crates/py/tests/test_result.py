@@ -156,7 +156,7 @@ def test_plot(result):
     matplotlib = pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     matplotlib.use("agg")
     axes = result.plot(FLOW, "sf2.feed_in_pump.m_flow_kg_s")
-    assert len(axes.lines) == 2 and axes.get_ylabel() == "kg s-1"
+    assert len(axes.lines) == 2 and axes.get_ylabel() == "flow in l/min"
     assert result.plot(FLOW, ax=axes) is axes and len(axes.lines) == 3
     for channels in ([], [FLOW, "sf1.hot.t_k"]):
         with pytest.raises(ValueError, match="one unit"):
@@ -198,3 +198,37 @@ def test_other_threads_run_meanwhile(model):
     done.set()
     thread.join()
     assert counts[0] > 3
+
+
+def test_arrow_streams(result):
+    """polars, pyarrow and pandas read them, without a copy in between made here."""
+    pl, pa = pytest.importorskip("polars"), pytest.importorskip("pyarrow")
+    table = pa.table(result)
+    assert table.column_names == ["time_s", *result.channels]
+    assert table.num_rows == len(result.time_s)
+    assert table.schema.metadata == {b"model": result.model_name.encode()}
+    for name in result:
+        assert table.schema.field(name).metadata == {b"unit": result.unit(name).encode()}
+        assert np.array_equal(table[name].to_numpy(), result[name], equal_nan=True)
+    frame = pl.DataFrame(result)
+    assert frame.columns == table.column_names
+    assert np.array_equal(frame["time_s"].to_numpy(), result.time_s)
+    # What was read outlives the results, and a stream that nobody reads is freed.
+    again = anergy.examples.load("three-houses").simulate(until_s=10, record_s=1)
+    expected, read = again[FLOW].tolist(), pa.table(again)
+    again.__arrow_c_stream__()
+    del again
+    gc.collect()
+    assert read[FLOW].to_pylist() == expected
+
+
+def test_parquet(result, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    result.to_parquet(tmp_path / "all.parquet")
+    table = parquet.read_table(tmp_path / "all.parquet")
+    assert table.num_columns == len(result) + 1
+    assert table.schema.field(FLOW).metadata[b"unit"] == b"kg s-1"
+    result.to_parquet(tmp_path / "some.parquet", channels=[FLOW])
+    assert parquet.read_table(tmp_path / "some.parquet").column_names == ["time_s", FLOW]
+    with pytest.raises(anergy.UnknownNameError, match="did you mean"):
+        result.to_parquet(tmp_path / "no.parquet", channels=["sf1.station.m_flow"])

@@ -15,6 +15,7 @@ mod layout;
 mod lookup;
 mod map;
 mod page;
+pub mod places;
 mod series;
 mod sites;
 mod tables;

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
+
+from anergy._units import hours, quantity, shown
 
 if TYPE_CHECKING:
     import pandas
@@ -57,6 +60,19 @@ def result_to_xarray(result: Result, channels: Sequence[str] | None) -> xarray.D
     return dataset
 
 
+def result_to_parquet(result: Result, path: os.PathLike[str], channels: Sequence[str] | None) -> None:
+    """A Parquet file with time_s and a column per channel."""
+    pa = _optional("pyarrow", "parquet")
+    parquet = _optional("pyarrow.parquet", "parquet")
+    table = pa.table(result)
+    if channels is not None:
+        names = _names(channels)
+        for name in names:
+            result.unit(name)
+        table = table.select(["time_s", *names])
+    parquet.write_table(table, path)
+
+
 def new_axes(width: float = 7.0, height: float = 4.5) -> Axes:
     """Axes of a new figure, width and height in inches."""
     pyplot = _optional("matplotlib.pyplot", "plot")
@@ -71,16 +87,19 @@ def plot(result: Result, channels: Sequence[str], ax: Axes | None) -> Axes:
         found = ", ".join(sorted(units)) or "no channel"
         raise ValueError(f"plot needs one or more channels of one unit, not: {found}")
     axes = ax or new_axes()
+    look = shown(units.pop(), result._density_kg_m3())
+    seconds, unit_of_time = hours(float(result.time_s[-1])) if len(result.time_s) else (1.0, "s")
     for name in channels:
-        axes.plot(result.time_s, result[name], label=name)
+        axes.plot(result.time_s / seconds, look.of(result[name]), label=name)
     seen = set()
     for kind, component, start_s, end_s in flagged(result):
         if any(_concerns(component, name) for name in channels):
             label = kind if kind not in seen else None
             seen.add(kind)
-            axes.axvspan(start_s, end_s, color=SHADES[kind], alpha=0.15, linewidth=0, label=label)
-    axes.set_xlabel("time in s")
-    axes.set_ylabel(units.pop())
+            axes.axvspan(start_s / seconds, end_s / seconds, color=SHADES[kind], alpha=0.15, linewidth=0, label=label)
+    words = {quantity(name) for name in channels}
+    axes.set_xlabel(f"time in {unit_of_time}")
+    axes.set_ylabel(look.label(words.pop() if len(words) == 1 else "value"))
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False, fontsize=9)
     return axes
 

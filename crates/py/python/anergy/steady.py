@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from anergy import _display, _export
-from anergy._core import _unknown_name
+from anergy import _display, _export, _maps
+from anergy._core import Model, _unknown_name
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.axes import Axes
 
 __all__ = ["Steady", "Table"]
 
@@ -87,6 +88,8 @@ class Steady:
     """Newton iterations of the first hydraulic solve."""
     residual_pa: float
     """Largest pressure residual of an edge, Pa."""
+    model: Model = field(repr=False, compare=False)
+    """What was solved."""
 
     def __getitem__(self, id: str) -> dict[str, Any]:
         """The row of an edge or, if there is none of that name, of a node.
@@ -97,6 +100,25 @@ class Steady:
             if id in table.ids:
                 return table.row(id)
         raise _unknown_name("edge or node", id, self.edges.ids + self.nodes.ids)
+
+    def plot_map(self, quantity: str = "t_k", ax: Axes | None = None) -> Axes:
+        """Draws the network, its lines coloured by a quantity, with arrows along the flow.
+
+        Parameters
+        ----------
+        quantity : str
+            A column of `nodes` or `edges`: `t_k`, `p_pa`, `m_flow_kg_s`, `dp_pa`.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; absent: a new figure.
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib: `pip install anergy[plot]`.
+        UnknownNameError
+            For a quantity that no line has.
+        """
+        return _maps.of_steady(self, quantity, ax)
 
     def __repr__(self) -> str:
         return (
