@@ -173,6 +173,16 @@ def test_sankey(result, day):
     assert sinks["losses"] == pytest.approx(kpis["network.heat_lost_kwh"])
 
 
+def test_sankey_of_many():
+    from anergy import _plots
+
+    town = anergy.Model.from_file(EXAMPLES / "town/model.toml").simulate(until_s=600, step_s=60, record_s=600)
+    sources, sinks = _plots.flows(town)
+    assert len(sinks) == 11 and "others" in list(sinks)[-1]
+    assert sum(sources.values()) == pytest.approx(sum(sinks.values()), rel=2e-2)
+    assert texts_overlap(town.plot_sankey()) == []
+
+
 def test_without_matplotlib(result, monkeypatch):
     import sys
 

@@ -103,6 +103,9 @@ mod tests {
         assert_eq!((places[1].name.as_str(), places[1].x_m, places[1].y_m), ("b", 7.0, 1.0));
         assert_eq!((places[1].hot.as_str(), places[1].cold.as_str()), ("b.hot", "b.cold"));
         assert_eq!((lines[1].from, lines[1].to, lines[1].side), (1, 0, "cold"));
-        assert_eq!((lines[0].edge.as_str(), &lines[0].nodes), ("h", &["a.hot".into(), "b.hot".into()]));
+        assert_eq!(
+            (lines[0].edge.as_str(), &lines[0].nodes),
+            ("h", &["a.hot".into(), "b.hot".into()])
+        );
     }
 }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import keyword
 import numbers
 import re
@@ -76,22 +75,24 @@ class Entry:
         return (self.section, field) not in OPTIONAL
 
 
-@functools.cache
+_sections: Json = {}
+
+
 def properties() -> Json:
     """The sections of the model file."""
-    sections: Json = schema()["properties"]
-    return sections
+    if not _sections:
+        _sections.update(schema()["properties"])
+    return _sections
 
 
-@functools.cache
-def entries() -> tuple[Entry, ...]:
+def entries() -> list[Entry]:
     """All entries that a grid can have."""
-    return tuple(
+    return [
         entry
         for section, whole in properties().items()
         if section not in ("format", "model")
         for entry in _of_section(section, whole)
-    )
+    ]
 
 
 def _of_section(section: str, whole: Json) -> Iterator[Entry]:

@@ -69,7 +69,8 @@ def of_steady(steady: Steady, wanted: str, ax: Axes | None) -> Axes:
 
 def clock(time_s: float) -> str:
     """A time in words: `37 min 10 s`."""
-    left, parts = round(time_s), []
+    left = round(time_s)
+    parts: list[str] = []
     for seconds, name in ((86_400, "d"), (3600, "h"), (60, "min"), (1, "s")):
         count, left = divmod(left, seconds)
         if count or (name == "s" and not parts):
@@ -104,7 +105,7 @@ def draw(
             _arrow(axes, *_shifted(points, line, apart), flow < 0, (apart, scale))
     axes.scatter(points[:, 0], points[:, 1], s=70 * scale**3, color="white", edgecolor="black", linewidth=scale, zorder=6)
     if len(places) <= MANY:
-        _names(axes, places, points)
+        _names(axes, places, lines, points)
     for line in lines:
         side = line["side"]
         if side not in borders:
@@ -115,7 +116,7 @@ def draw(
     )
     axes.figure.colorbar(mappable, ax=axes, label=look.label(quantity(wanted)), fraction=0.04, pad=0.02)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.1)
+    axes.margins(0.13)
     axes.set_axis_off()
     return axes
 
@@ -124,6 +125,8 @@ def at_ends(line: Mapping[str, Any], value: Values, wanted: str) -> tuple[float,
     """What a line shows at its ports: its own value, or those of its nodes."""
     own = value(f"{line['edge']}.{wanted}")
     if own is not None:
+        # Which way water flows is for the arrows.
+        own = abs(own) if "_flow_" in wanted and not wanted.startswith("q_") else own
         return own, own
     a, b = (value(f"{node}.{wanted}") for node in line["nodes"])
     return None if a is None or b is None else (a, b)
@@ -186,14 +189,28 @@ def _arrow(
         return
     middle, along = (a + b) / 2, (b - a) / length
     axes.annotate(
-        "", xy=middle + 1.2 * apart * along, xytext=middle - 1.2 * apart * along, zorder=5,
-        arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.2 * scale, "mutation_scale": 13 * scale},
+        "", xy=tuple(middle + 1.2 * apart * along), xytext=tuple(middle - 1.2 * apart * along), zorder=5,
+        arrowprops={"arrowstyle": "-|>", "facecolor": "white", "edgecolor": "black", "linewidth": 1.2 * scale, "mutation_scale": 13 * scale},
     )
 
 
-def _names(axes: Axes, places: list[Any], points: npt.NDArray[np.float64]) -> None:
-    for place, point in zip(places, points, strict=True):
+def _names(axes: Axes, places: list[Any], lines: list[Any], points: npt.NDArray[np.float64]) -> None:
+    """Names beside their places, away from the lines."""
+    from matplotlib.patheffects import withStroke
+
+    away = np.zeros_like(points)
+    for line in lines:
+        ends = points[line["from"]], points[line["to"]]
+        along = (ends[1] - ends[0]) / (float(np.hypot(*(ends[1] - ends[0]))) or 1.0)
+        away[line["from"]] -= along
+        away[line["to"]] += along
+    for place, (x, y), way in zip(places, points, away, strict=True):
+        length = float(np.hypot(*way))
+        # Where lines come from all sides, above.
+        dx, dy = way / length if length > 0.5 else (0.0, 1.0)
         axes.annotate(
-            place["name"], point, xytext=(0, 13), textcoords="offset points", ha="center", va="bottom",
-            fontsize=9, zorder=7, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8},
+            place["name"], (x, y), xytext=(12 * dx, 12 * dy), textcoords="offset points",
+            ha="left" if dx > 0.4 else "right" if dx < -0.4 else "center",
+            va="bottom" if dy > 0.4 else "top" if dy < -0.4 else "center",
+            fontsize=9, zorder=7, path_effects=[withStroke(linewidth=3, foreground="white")],
         )

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from anergy._core import Result
 
 DAY_S = 86_400.0
+BANDS = 10
+"""Bands of a side, besides one for all others."""
 IN, OUT, CORE = "#cf5500", "#0068ac", "#4a525c"
-ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "frameon": False, "fontsize": 9}
-"""A legend above of the axes."""
 
 
 def duration(result: Result, channels: Sequence[str], ax: Axes | None) -> Axes:
@@ -40,7 +40,7 @@ def duration(result: Result, channels: Sequence[str], ax: Axes | None) -> Axes:
     axes.set_xlabel(f"time with at least this value in {name}")
     axes.set_ylabel(label)
     axes.grid(alpha=0.3)
-    axes.legend(ncols=2, **ABOVE)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False, fontsize=9)
     return axes
 
 
@@ -65,7 +65,7 @@ def carpet(result: Result, channel: str, ax: Axes | None) -> Axes:
     axes.set_xlabel("day, from that of the start" if start_s else "day of the run")
     axes.set_ylabel("hour of the day (UTC)" if start_s else "hour of the day")
     axes.set_yticks(range(0, 25, 6))
-    axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.locator_params(axis="x", integer=True)
     axes.figure.colorbar(mesh, ax=axes, label=unit.label(quantity(channel)), pad=0.02)
     axes.set_title(channel, fontsize=10)
     return axes
@@ -89,7 +89,7 @@ def storage(result: Result, unit: str, ax: Axes | None) -> Axes:
     mesh = axes.pcolormesh(times, np.arange(1, len(found) + 1), layers, cmap="inferno", shading="nearest", rasterized=True)
     axes.set_xlabel(f"time in {name}")
     axes.set_ylabel("layer (1 is the bottom)")
-    axes.yaxis.get_major_locator().set_params(integer=True)
+    axes.locator_params(axis="y", integer=True)
     axes.figure.colorbar(mesh, ax=axes, label="temperature in °C", pad=0.02)
     axes.set_title(unit, fontsize=10)
     return axes
@@ -143,8 +143,11 @@ def flows(result: Result) -> tuple[dict[str, float], dict[str, float]]:
     least = 5e-4 * max(sum(sources.values()), sum(sinks.values()))
 
     def kept(found: dict[str, float]) -> dict[str, float]:
-        large = {name: value for name, value in found.items() if value > least}
-        return dict(sorted(large.items(), key=lambda one: -one[1]))
+        large = sorted(((name, value) for name, value in found.items() if value > least), key=lambda one: -one[1])
+        bands, rest = dict(large[:BANDS]), large[BANDS:]
+        if rest:
+            bands[f"{len(rest)} others"] = sum(value for _, value in rest)
+        return bands
 
     return kept(sources), kept(sinks)
 
