@@ -7,7 +7,7 @@
 
 use crate::elements::Element;
 use crate::soil::SoilRings;
-use crate::two_port::{Characteristic, EdgeState};
+use crate::two_port::{Characteristic, EdgeState, Pieces};
 use crate::well_posed::{Equation, Unknown};
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_core::medium::Medium;
@@ -75,6 +75,16 @@ impl Edge {
     /// Change of the pressure loss with the position at a given flow, Pa per unit of the position.
     pub fn loss_by_position(&self, m_flow_kg_s: f64, state: &EdgeState) -> f64 {
         self.loss_factor * self.element.loss_by_position(m_flow_kg_s, state)
+    }
+
+    /// The pieces of a law with corners.
+    pub fn pieces(&self, m_flow_kg_s: f64, state: &EdgeState) -> Option<Pieces> {
+        let factor = self.loss_factor;
+        self.element.pieces(m_flow_kg_s, state).map(|Pieces { lower, line, upper }| Pieces {
+            lower: lower.scaled(factor),
+            line: line.scaled(factor),
+            upper: upper.scaled(factor),
+        })
     }
 
     /// Flow from which a first solve begins, kg/s.

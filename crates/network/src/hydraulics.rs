@@ -21,6 +21,7 @@ mod ideal;
 mod islands;
 mod line_search;
 pub mod linearize;
+mod pieces;
 mod position;
 mod prescribed;
 mod reconsider;
@@ -111,6 +112,7 @@ pub struct HydraulicSolver {
     carried: Vec<Option<f64>>,
     /// Whether each prescription was tried with its actuator open in this solve.
     opened: Vec<bool>,
+    corners: pieces::Corners,
     heads: heads::Heads,
     openings: regulated::Openings,
 }
@@ -142,6 +144,7 @@ impl HydraulicSolver {
             shut: None,
             carried: prescribed::carried(network),
             opened: vec![false; network.prescriptions.len()],
+            corners: pieces::Corners::new(network),
             heads: heads::Heads::new(network),
             openings: regulated::Openings::new(network),
         })
@@ -192,16 +195,21 @@ impl HydraulicSolver {
     ) -> Result<HydraulicReport, HydraulicError> {
         let mut starts = state.m_flow_kg_s.iter().zip(&network.edges);
         let first = starts.all(|(m, edge)| *m == edge.start_m_flow_kg_s());
-        if !first && let Some(report) = self.iterate(network, state, MAX_ITERATIONS_GIVEN)? {
-            return Ok(report);
+        let mut before = 0;
+        if !first {
+            before = self.choose_pieces(network, state)?;
+            if let Some(report) = self.iterate(network, state, MAX_ITERATIONS_GIVEN)? {
+                return Ok(HydraulicReport { iterations: before + report.iterations, ..report });
+            }
+            before += MAX_ITERATIONS_GIVEN;
         }
         for (m, edge) in state.m_flow_kg_s.iter_mut().zip(&network.edges) {
             *m = edge.start_m_flow_kg_s();
         }
         self.system.forget_pressures(state);
+        before += self.choose_pieces(network, state)?;
         match self.iterate(network, state, MAX_ITERATIONS)? {
             Some(report) => {
-                let before = if first { 0 } else { MAX_ITERATIONS_GIVEN };
                 let iterations = before + report.iterations;
                 Ok(HydraulicReport { iterations, ..report })
             }
@@ -235,6 +243,9 @@ impl HydraulicSolver {
                 continue;
             }
             let largest_p_pa = self.system.largest_p_pa();
+            if self.corners.open && trial.residual_pa <= pieces::RESIDUAL * largest_p_pa {
+                return Ok(Some(HydraulicReport { iterations: iteration, ..Default::default() }));
+            }
             if trial.correction <= 1.0
                 && trial.residual_pa <= RESIDUAL_PA + RESIDUAL_RELATIVE * largest_p_pa
                 && self.surrounds(network, state)
@@ -270,9 +281,15 @@ impl HydraulicSolver {
     #[inline]
     fn answer(&self, edge: &Edge, i: usize, m: f64, state: &EdgeState) -> Characteristic {
         match self.stand.get(i) {
-            Some(stand) => stand.characteristic(m, || edge.characteristic(m, state)),
-            None => edge.characteristic(m, state),
+            Some(stand) => stand.characteristic(m, || self.own_answer(edge, i, m, state)),
+            None => self.own_answer(edge, i, m, state),
         }
+    }
+
+    #[inline]
+    fn own_answer(&self, edge: &Edge, i: usize, m: f64, state: &EdgeState) -> Characteristic {
+        let piece = self.corners.open.then(|| self.corners.characteristic(edge, i, m, state));
+        piece.flatten().unwrap_or_else(|| edge.characteristic(m, state))
     }
 
     /// Law of every edge at the flows of the state; those that are known are kept.

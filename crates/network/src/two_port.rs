@@ -27,6 +27,18 @@ pub enum Characteristic {
     },
 }
 
+/// Pressure losses of which the middle one holds: the law is `max(lower, min(line, upper))`, but for rounded
+/// corners. The line is straight and steeper than the others, which it crosses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pieces {
+    /// The least loss: what the component does at its one limit.
+    pub lower: Linear,
+    /// What it does between its limits.
+    pub line: Linear,
+    /// The largest loss: at the other limit.
+    pub upper: Linear,
+}
+
 /// What an element is told about its edge at the moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeState {
@@ -198,6 +210,16 @@ pub trait TwoPort {
     /// kink that of one side.
     fn loss_by_position(&self, _m_flow_kg_s: f64, _state: &EdgeState) -> f64 {
         0.0
+    }
+
+    /// The pieces of a law with corners sharper than a Newton step can foresee.
+    fn pieces(&self, _m_flow_kg_s: f64, _state: &EdgeState) -> Option<Pieces> {
+        None
+    }
+
+    /// Whether the law has such corners.
+    fn has_corners(&self) -> bool {
+        false
     }
 
     /// A typical flow, kg/s: start value of a cold solve.

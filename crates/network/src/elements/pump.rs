@@ -33,7 +33,8 @@ mod tests;
 pub use mode::PumpMode;
 
 use crate::two_port::{
-    Actuator, Characteristic, EdgeState, ElementError, TwoPort, not_negative, positive, ratio,
+    Actuator, Characteristic, EdgeState, ElementError, Pieces, TwoPort, not_negative, positive,
+    ratio,
 };
 use anergy_core::linear::Linear;
 use anergy_core::medium::Medium;
@@ -310,16 +311,6 @@ impl Pump {
         self.speed_max
     }
 
-    /// Whether the pump holds a value other than its speed.
-    pub fn holds(&self) -> bool {
-        self.mode != PumpMode::Speed
-    }
-
-    /// Whether what it holds is a flow, and not a head.
-    pub fn holds_flow(&self) -> bool {
-        self.mode == PumpMode::Flow
-    }
-
     /// Whether the losses of the pump warm the water that passes.
     pub fn warms_water(&self) -> bool {
         self.heat_to_water.is_some()
@@ -359,6 +350,16 @@ impl TwoPort for Pump {
     fn loss_by_position(&self, m: f64, state: &EdgeState) -> f64 {
         let (position, density) = (state.position, state.density_kg_m3);
         self.mode.loss_by_position(&self.curve, m, position, density, self.speed_max)
+    }
+
+    fn has_corners(&self) -> bool {
+        self.holds_flow()
+    }
+
+    fn pieces(&self, m: f64, state: &EdgeState) -> Option<Pieces> {
+        let (position, density) = (state.position, state.density_kg_m3);
+        let (pieces, _) = self.mode.pieces(&self.curve, m, position, density, self.speed_max)?;
+        self.holds_flow().then_some(pieces)
     }
 
     fn m_flow_nominal_kg_s(&self) -> f64 {

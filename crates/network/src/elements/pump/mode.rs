@@ -17,12 +17,12 @@
 //!
 //! **Numerics** maximum and minimum are rounded within 1e-3 of the head at zero flow. A set value of
 //! zero is a pump at rest; up to 1e-3 of the nominal flow or head the available speed rises linearly. The
-//! corners are sharper than a Newton step can foresee: several such pumps that change their side together
-//! take one or two iterations each.
+//! corners of a held flow are sharper than a Newton step can foresee, which jumps between full speed and
+//! rest over the line: the solver chooses the pieces ([`Pieces`], `hydraulics/pieces.rs`).
 
 use super::PumpParams;
 use super::curve::HeadCurve;
-use crate::two_port::{ElementError, positive, ratio};
+use crate::two_port::{ElementError, Pieces, positive, ratio};
 use anergy_core::linear::Linear;
 use anergy_core::numerics::regularize::{smooth_max, smooth_min};
 use schemars::JsonSchema;
@@ -69,16 +69,31 @@ impl PumpMode {
         if self == Self::Speed {
             return curve.loss(m, position, density);
         }
-        let (held, _, whole) = self.held(curve, m, position, speed_max);
+        let Some((pieces, rounding)) = self.pieces(curve, m, position, density, speed_max) else {
+            return curve.loss(m, 0.0, density);
+        };
+        let Pieces { lower, line, upper } = pieces;
+        smooth_max(lower, smooth_min(line, upper, rounding), rounding)
+    }
+
+    /// Full speed, the line that holds the set value and rest, and the rounding of the corners; none at rest.
+    pub(super) fn pieces(
+        self,
+        curve: &HeadCurve,
+        m: f64,
+        position: f64,
+        density: f64,
+        speed_max: f64,
+    ) -> Option<(Pieces, f64)> {
+        let (line, _, whole) = self.held(curve, m, position, speed_max);
         let head_max_pa = speed_max * speed_max * curve.head_max_pa;
         let available = (position / whole / SWITCHED_OFF).clamp(0.0, 1.0);
-        let rest = curve.loss(m, 0.0, density);
         if available == 0.0 {
-            return rest;
+            return None;
         }
         let rounding = ROUNDING * available * available * head_max_pa;
-        let full = curve.loss(m, available * speed_max, density);
-        smooth_max(full, smooth_min(held, rest, rounding), rounding)
+        let lower = curve.loss(m, available * speed_max, density);
+        Some((Pieces { lower, line, upper: curve.loss(m, 0.0, density) }, rounding))
     }
 
     /// The line that holds the set value, its change with that value, and the nominal flow or the head at
@@ -179,6 +194,16 @@ impl PumpParams {
 }
 
 impl super::Pump {
+    /// Whether the pump holds a value other than its speed.
+    pub fn holds(&self) -> bool {
+        self.mode != PumpMode::Speed
+    }
+
+    /// Whether what it holds is a flow, and not a head.
+    pub fn holds_flow(&self) -> bool {
+        self.mode == PumpMode::Flow
+    }
+
     /// The same pump, holding a flow by its own choice of speed: its position is that flow, kg/s.
     #[must_use]
     pub fn holding_flow(&self) -> Self {
