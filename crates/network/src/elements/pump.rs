@@ -306,11 +306,6 @@ impl Pump {
         self.curve.head_max_pa
     }
 
-    /// Largest relative speed.
-    pub fn speed_max(&self) -> f64 {
-        self.speed_max
-    }
-
     /// Whether the losses of the pump warm the water that passes.
     pub fn warms_water(&self) -> bool {
         self.heat_to_water.is_some()

@@ -194,6 +194,11 @@ impl PumpParams {
 }
 
 impl super::Pump {
+    /// Largest relative speed.
+    pub fn speed_max(&self) -> f64 {
+        self.speed_max
+    }
+
     /// Whether the pump holds a value other than its speed.
     pub fn holds(&self) -> bool {
         self.mode != PumpMode::Speed
