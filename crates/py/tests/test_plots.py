@@ -65,10 +65,10 @@ def test_map(result):
     assert labels(axes) == {"temperature in °C"} and legend(axes) == ["hot line", "cold line"]
     assert axes.get_title() == "three houses: pump blocking, at 10 min"
     (lines,) = axes.collections[:1]
-    # Four pipes in 24 pieces; the first one from the temperature of its one node to that of the other.
+    # Four pipes in 24 pieces; the first one from the temperature of its water at port a to that at port b.
     values = lines.get_array()
     assert len(values) == 4 * 24
-    ends = [result[f"{node}.hot.t_k"][-1] - 273.15 for node in ("sf1", "sf2")]
+    ends = [result[f"sf1-sf2.hot.t_{port}_k"][-1] - 273.15 for port in "ab"]
     assert values[[0, 23]].tolist() == pytest.approx(ends)
     names = {text.get_text() for text in axes.texts} - {""}
     assert names == {"sf1", "sf2", "sf4"} and texts_overlap(axes) == []

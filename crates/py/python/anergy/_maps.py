@@ -122,12 +122,16 @@ def draw(
 
 
 def at_ends(line: Mapping[str, Any], value: Values, wanted: str) -> tuple[float, float] | None:
-    """What a line shows at its ports: its own value, or those of its nodes."""
+    """What a line shows at its ports: its own value, that of its water there, or those of its nodes."""
     own = value(f"{line['edge']}.{wanted}")
     if own is not None:
         # Which way water flows is for the arrows.
         own = abs(own) if "_flow_" in wanted and not wanted.startswith("q_") else own
         return own, own
+    if wanted == "t_k":
+        inside = [value(f"{line['edge']}.t_{port}_k") for port in "ab"]
+        if inside[0] is not None and inside[1] is not None:
+            return inside[0], inside[1]
     a, b = (value(f"{node}.{wanted}") for node in line["nodes"])
     return None if a is None or b is None else (a, b)
 

@@ -17,11 +17,11 @@
 ...     def update(self, time_s, measured):
 ...         error = self.set_point_kg_s - measured[0]
 ...         low, high = self.limits[0]
-...         self.integral = min(max(self.integral + 1.0 * error, low), high)
-...         return min(max(self.integral + 3.0 * error, low), high)
+...         self.integral = min(max(self.integral + 0.2 * error, low), high)
+...         return min(max(self.integral + 0.6 * error, low), high)
 >>> model = anergy.examples.load("three-houses")
 >>> result = model.simulate(until_s=600, controllers=[PumpPi("sf2", 0.05)])
->>> round(float(result["sf2.feed_in_pump.m_flow_kg_s"][-1]), 4)
+>>> round(float(result["sf2.feed_in_pump.m_flow_kg_s"][-1]), 3)
 0.05
 """
 

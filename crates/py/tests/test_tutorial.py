@@ -1,0 +1,61 @@
+"""What a new user reads works: the code of the pages is run as it stands, and prints what they show."""
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import anergy
+import pytest
+
+ROOT = Path(__file__).parents[3]
+FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+
+
+def blocks(page):
+    """Code of a page, and what is shown right after it."""
+    text = page.read_text()
+    found = list(FENCE.finditer(text))
+    for block, after in zip(found, [*found[1:], None], strict=True):
+        if block[1] == "python":
+            shown = after and after[1] == "text" and text[block.end() : after.start()].strip() == ""
+            line = text[: block.start()].count("\n") + 2
+            yield line, block[2], after[2] if shown else None
+
+
+def run(page, names):
+    for line, code, shown in blocks(page):
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            exec(compile("\n" * (line - 1) + code, str(page), "exec"), names)
+        if shown is not None:
+            assert out.getvalue() == shown, f"{page}:{line}"
+    return names
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    matplotlib = pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    matplotlib.use("agg")
+    monkeypatch.chdir(tmp_path)
+    yield
+    pytest.importorskip("matplotlib.pyplot").close("all")
+
+
+def test_tutorial(tmp_path):
+    page = ROOT / "docs/src/tutorial-python.md"
+    assert sum(shown is not None for _, _, shown in blocks(page)) >= 7
+    run(page, {})
+    assert {path.name for path in tmp_path.iterdir()} >= {"pressures.png", "flows.png", "temperatures.png", "heat.png"}
+
+
+def test_readme(tmp_path):
+    run(ROOT / "README.md", {})
+    assert (tmp_path / "report.html").exists() and (tmp_path / "two-houses.toml").exists()
+
+
+def test_controllers_page():
+    names = {"anergy": anergy, "model": anergy.examples.load("three-houses")}
+    result = run(ROOT / "docs/src/controllers.md", names)["result"]
+    for site in ("sf1", "sf2"):
+        assert result[f"{site}.feed_in_pump.m_flow_kg_s"][-1] == pytest.approx(0.05, abs=1e-4)
