@@ -36,6 +36,7 @@ python: $(VENV)/.installed ## Build the Python package into a private environmen
 test-python: python ## Python tests, stub check and examples
 	$(BIN)/python -m pytest -q crates/py
 	$(BIN)/python -m mypy.stubtest anergy --mypy-config-file crates/py/pyproject.toml
+	$(BIN)/python -m mypy --config-file crates/py/pyproject.toml crates/py/python/anergy crates/py/tests/typed_use.py
 	$(BIN)/python examples/three-houses/run.py
 	$(BIN)/python examples/town/run.py
 	$(BIN)/python examples/cold-plug/run.py

@@ -58,9 +58,9 @@ def test_the_three_houses_are_the_example(model, tmp_path):
 
 
 def test_the_stub_is_up_to_date():
-    """When it fails: python crates/py/generate_grid.py"""
     found = runpy.run_path(str(HERE.parent / "generate_grid.py"))
-    assert found["STUB"].read_text() == found["text"]()
+    fresh = found["STUB"].read_text() == found["text"]()
+    assert fresh, "the model file has changed: run python crates/py/generate_grid.py"
 
 
 def test_everything_of_the_model_file_can_be_added():

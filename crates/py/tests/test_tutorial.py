@@ -1,7 +1,9 @@
 """What a new user reads works: the code of the pages is run as it stands, and prints what they show."""
 
+import ast
 import contextlib
 import io
+import json
 import re
 from pathlib import Path
 
@@ -52,6 +54,25 @@ def test_tutorial(tmp_path):
 def test_readme(tmp_path):
     run(ROOT / "README.md", {})
     assert (tmp_path / "report.html").exists() and (tmp_path / "two-houses.toml").exists()
+
+
+def test_notebooks():
+    """Every cell, and how its last value looks."""
+    notebooks = sorted((ROOT / "examples/notebooks").glob("*.ipynb"))
+    assert notebooks
+    for path in notebooks:
+        names = {}
+        for cell in json.loads(path.read_text())["cells"]:
+            if cell["cell_type"] != "code":
+                continue
+            assert cell["outputs"] == [] and cell["execution_count"] is None
+            body = ast.parse("".join(cell["source"]))
+            last = body.body.pop() if isinstance(body.body[-1], ast.Expr) else None
+            exec(compile(body, str(path), "exec"), names)
+            if last is not None:
+                value = eval(compile(ast.Expression(last.value), str(path), "eval"), names)
+                if hasattr(value, "_repr_html_"):
+                    assert value._repr_html_().startswith("<table")
 
 
 def test_controllers_page():

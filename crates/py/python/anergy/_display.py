@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 TEXT_ROWS = 20
 HTML_ROWS = 100
+_TABLE = '<table style="text-align: left">'
 
 
 def kpis(result: Result) -> dict[str, float]:
@@ -86,7 +87,7 @@ def table_html(table: Mapping[str, npt.NDArray[Any]]) -> str:
         for row in rows
     )
     more = f"<p>{_rows(table)} rows</p>" if _rows(table) > HTML_ROWS else ""
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+    return f"{_TABLE}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
 
 
 def _rows(table: Mapping[str, npt.NDArray[Any]]) -> int:
@@ -103,4 +104,4 @@ def rows_html(title: str, rows: Iterable[tuple[str, Any]]) -> str:
         f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(value))}</td></tr>"
         for name, value in rows
     )
-    return f"<table><caption>{html.escape(title)}</caption><tbody>{body}</tbody></table>"
+    return f"{_TABLE}<caption style=\"white-space: nowrap\">{html.escape(title)}</caption><tbody>{body}</tbody></table>"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from anergy._export import new_axes
+from anergy._units import shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
     from anergy.steady import Table
 
 BLUE, RED, GREY, GREEN = "#0068ac", "#cf5500", "#6b7480", "#008f69"
-KG_MIN = 60.0
-"""kg/min per kg/s."""
 LOOK = {"present": (BLUE, "-", 2.0), "threshold": (RED, "--", 1.5), "full": (GREY, ":", 1.5)}
 AREAS = ("#f2f4f6", "#f4a582", "#92c5de", "#c2a5cf", "#a6dba0", "#fee08b", "#bababa", "#e9a3c9")
 
@@ -76,10 +75,11 @@ def feeders(table: Table, ax: Axes | None) -> Axes:
     return axes
 
 
-def pump(found: Mapping[str, Any], ax: Axes | None) -> Axes:
+def pump(found: Mapping[str, Any], density_kg_m3: float, ax: Axes | None) -> Axes:
     """Head of a pump and what the network opposes over its flow."""
     axes = ax or new_axes()
     margin, opposing = found["margin"], found["opposing"]
+    look = shown("kg s-1", density_kg_m3)
     for curve in found["curves"]:
         colour, style, width = LOOK[curve["at"]]
         flow, head = np.array(curve["m_flow_kg_s"]), np.array(curve["head_pa"]) / 1e5
@@ -90,27 +90,27 @@ def pump(found: Mapping[str, Any], ax: Axes | None) -> Axes:
         }[curve["at"]]
         keep = head >= 0
         axes.plot(
-            KG_MIN * flow[keep], head[keep], style, color=colour, linewidth=width,
+            look.of(flow[keep]), head[keep], style, color=colour, linewidth=width,
             label=f"{label}, {curve['speed']:.3f}",
         )
     if opposing["dp_pa"]:
         axes.plot(
-            KG_MIN * np.array(opposing["m_flow_kg_s"]), np.array(opposing["dp_pa"]) / 1e5,
+            look.of(opposing["m_flow_kg_s"]), np.array(opposing["dp_pa"]) / 1e5,
             color="black", linewidth=1.8, label="what the network opposes",
         )
         axes.plot(0, margin["opposing_dp_pa"] / 1e5, "s", color=RED, markersize=6, clip_on=False, zorder=4)
     axes.plot(
-        max(0.0, KG_MIN * margin["m_flow_kg_s"]), found["head_pa"] / 1e5, "o", color=BLUE,
+        float(look.of(max(0.0, margin["m_flow_kg_s"]))), found["head_pa"] / 1e5, "o", color=BLUE,
         markersize=8, clip_on=False, zorder=5, label="operating point",
     )
     wanted = margin.get("requested_m_flow_kg_s")
     if wanted:
-        axes.axvline(KG_MIN * wanted, color=GREEN, linewidth=1, linestyle="-.", label="requested flow")
+        axes.axvline(float(look.of(wanted)), color=GREEN, linewidth=1, linestyle="-.", label="requested flow")
     axes.set_xlim(left=0)
     low, high = axes.get_ylim()
     # Flat curves far above zero need a closer look.
     axes.set_ylim(bottom=low if low > 0.5 * high else 0)
-    axes.set_xlabel("flow in kg/min")
+    axes.set_xlabel(look.label("flow"))
     axes.set_ylabel("head in bar")
     by = f" by {margin['blocked_by']}" if margin["blocked_by"] else ""
     word = "blocked" if margin["blocked"] else "held back" if margin["held_back"] else "free"

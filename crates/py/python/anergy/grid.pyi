@@ -4811,6 +4811,10 @@ class Grid:
         gravity: float | None = None,
         thermosiphon: bool | None = None,
         dissipation: bool | None = None,
+        latitude_rad: float | None = None,
+        latitude_deg: float | None = None,
+        longitude_rad: float | None = None,
+        longitude_deg: float | None = None,
     ) -> None: ...
     station_type: Final[_StationType]
     station: Final[_Station]

@@ -144,7 +144,8 @@ impl Model {
     ) -> PyResult<Bound<'py, PyAny>> {
         let curves = self.ask(py, |model| pump_curves(model, pump))?;
         let curves = convert::to_python(py, &curves.map_err(PyValueError::new_err)?)?;
-        py.import("anergy._stability_plots")?.getattr("pump")?.call1((curves, ax))
+        let density_kg_m3 = self.model.medium.density_kg_m3;
+        py.import("anergy._stability_plots")?.getattr("pump")?.call1((curves, density_kg_m3, ax))
     }
 }
 
