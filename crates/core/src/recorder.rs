@@ -115,6 +115,9 @@ pub struct MapEdge {
     pub to: String,
     /// Length, m; zero for what is not a pipe.
     pub length_m: f64,
+    /// Inner diameter, m; zero for what is not a pipe, and in older recordings.
+    #[serde(default)]
+    pub inner_diameter_m: f64,
     /// Name of the station the edge belongs to; empty for others.
     pub station: String,
 }

@@ -92,6 +92,7 @@ fn header() -> RunHeader {
                 from: "a".into(),
                 to: "b".into(),
                 length_m: 12.3,
+                inner_diameter_m: 0.02,
                 station: String::new(),
             }],
         },

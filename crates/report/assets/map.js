@@ -10,49 +10,123 @@ const RAMP = [
   [190, 38, 44],
 ];
 
-function rampColour(share) {
-  if (!Number.isFinite(share)) return css("--muted");
-  const at = Math.min(Math.max(share, 0), 1) * (RAMP.length - 1);
-  const low = Math.min(Math.floor(at), RAMP.length - 2);
-  const mixed = RAMP[low].map((c, i) => Math.round(c + (at - low) * (RAMP[low + 1][i] - c)));
-  return `rgb(${mixed.join(" ")})`;
+// Little to much, for what is neither cold nor hot.
+const AMOUNT = [
+  [108, 92, 160],
+  [52, 116, 176],
+  [32, 144, 140],
+  [112, 168, 60],
+  [226, 156, 24],
+];
+const STEPS = 32;
+/** Flow below which water counts as resting, kg/s: as in the indicators. */
+const RESTING = 1e-3;
+
+/** The colours of a ramp as text, made once. */
+function coloursOf(ramp) {
+  return Array.from({ length: STEPS + 1 }, (_, step) => {
+    const at = (step / STEPS) * (ramp.length - 1);
+    const low = Math.min(Math.floor(at), ramp.length - 2);
+    const mixed = ramp[low].map((c, i) => Math.round(c + (at - low) * (ramp[low + 1][i] - c)));
+    return `rgb(${mixed.join(" ")})`;
+  });
 }
 
 function startMap(data, clock, plots) {
   const svg = document.querySelector("svg[data-map]");
   const { vertices, edges, columns } = data.map;
-  const values = decode(data.map.data, Float32Array);
-  const { flow: FLOW, pressure: PRESSURE, temperature: TEMPERATURE, heat: HEAT } = data.units;
-  const at = (column) => (column === null ? NaN : (values[clock.index * columns + column] ?? NaN));
+  const steps = decode(data.map.data, Uint16Array);
+  const low = decode(data.map.low, Float64Array);
+  const size = decode(data.map.size, Float64Array);
+  const { flow: FLOW, pressure: PRESSURE, temperature: TEMPERATURE, heat: HEAT, velocity: VELOCITY } = data.units;
+  function valueAt(frame, column) {
+    if (column === null) return NaN;
+    const step = steps[frame * columns + column];
+    return step === undefined || step === 65535 ? NaN : low[column] + step * size[column];
+  }
+  const at = (column) => valueAt(clock.index, column);
   const gap = Number(svg.dataset.gap);
   const brief = svg.classList.contains("brief");
 
-  /** Calls `visit` with every finite value of some columns. */
-  function every(wanted, visit) {
+  /** Least and greatest value of some columns over all frames. */
+  function range(wanted) {
     const list = [...new Set(wanted)].filter((column) => column !== null);
+    let [least, greatest] = [Infinity, -Infinity];
     for (let frame = 0; frame < clock.times.length; frame++) {
       for (const column of list) {
-        const value = values[frame * columns + column];
-        if (Number.isFinite(value)) visit(value);
+        const value = valueAt(frame, column);
+        if (value < least) least = value;
+        if (value > greatest) greatest = value;
       }
     }
+    return [least, greatest];
   }
-  let [tMin, tMax, flowMax, stationMax] = [Infinity, -Infinity, 0, 0];
+  const largest = (columns) => Math.max(0, ...range(columns).filter(Number.isFinite).map(Math.abs));
   const nodes = vertices.flatMap((vertex) => [vertex.hot, vertex.cold]).filter(Boolean);
-  const temperatures = edges.flatMap((edge) => [...edge.inside, ...edge.nodes]);
-  every([...nodes.map((node) => node.t), ...temperatures], (t) => {
-    tMin = Math.min(tMin, t);
-    tMax = Math.max(tMax, t);
-  });
-  every(edges.map((edge) => edge.flow), (m) => (flowMax = Math.max(flowMax, Math.abs(m))));
-  const stationFlows = vertices.flatMap((vertex) => vertex.stations.map((s) => s.flow));
-  every(stationFlows, (m) => (stationMax = Math.max(stationMax, Math.abs(m))));
-  document.getElementById("t-min").textContent = show(tMin, TEMPERATURE);
-  document.getElementById("t-max").textContent = show(tMax, TEMPERATURE);
+  const flowMax = largest(edges.map((edge) => edge.flow));
+  const speedOf = (edge, m) => (edge.area > 0 ? Math.abs(m) / (data.density_kg_m3 * edge.area) : NaN);
   document.getElementById("flow-max").textContent = show(flowMax, FLOW);
-  // One temperature only: the middle of the ramp.
-  if (tMax - tMin < 1) [tMin, tMax] = [(tMin + tMax - 1) / 2, (tMin + tMax + 1) / 2];
-  const colour = (t) => rampColour((t - tMin) / (tMax - tMin));
+
+  // What colours show: values at both ends of a line, of a node, and their range, found when first asked for.
+  const quantities = {
+    temperature: {
+      name: "Temperature",
+      display: TEMPERATURE,
+      ramp: coloursOf(RAMP),
+      ends: endTemperatures,
+      node: (node) => at(node.t),
+      range: () => range([...nodes.map((node) => node.t), ...edges.flatMap((e) => [...e.inside, ...e.nodes])]),
+      least: 2,
+    },
+    flow: {
+      name: "Flow",
+      display: FLOW,
+      ramp: coloursOf(AMOUNT),
+      ends: (edge) => [Math.abs(at(edge.flow)), Math.abs(at(edge.flow))],
+      range: () => [0, flowMax],
+      least: 0,
+    },
+    pressure: {
+      name: "Pressure",
+      display: PRESSURE,
+      ramp: coloursOf(AMOUNT),
+      ends: (edge) => edge.pressures.map(at),
+      node: (node) => at(node.p),
+      range: () => range([...nodes.map((node) => node.p), ...edges.flatMap((edge) => edge.pressures)]),
+      least: 100,
+    },
+    velocity: {
+      name: "Velocity",
+      display: VELOCITY,
+      ramp: coloursOf(AMOUNT),
+      ends: (edge) => [speedOf(edge, at(edge.flow)), speedOf(edge, at(edge.flow))],
+      range: () => [0, Math.max(0, ...edges.map((e) => speedOf(e, largest([e.flow]))).filter(Number.isFinite))],
+      least: 0,
+    },
+  };
+  let chosen = quantities.temperature;
+  let [muted, blank] = [css("--muted"), css("--rule")];
+  function choose(word) {
+    chosen = quantities[word] ?? quantities.temperature;
+    if (!chosen.scale) {
+      const [least, greatest] = chosen.range();
+      // One value only: the middle of the ramp.
+      const lack = Math.max(0, chosen.least - (greatest - least)) / 2;
+      chosen.scale = [least - lack, greatest + lack];
+      chosen.shown = [least, greatest];
+    }
+    document.getElementById("c-name").textContent = chosen.name;
+    document.getElementById("c-min").textContent = show(chosen.shown[0], chosen.display);
+    document.getElementById("c-max").textContent = show(chosen.shown[1], chosen.display);
+    document.getElementById("c-bar").style.background = `linear-gradient(to right, ${chosen.ramp.join(", ")})`;
+    svg.dataset.quantity = word;
+  }
+  function colour(value) {
+    const [least, greatest] = chosen.scale;
+    const share = (value - least) / (greatest - least);
+    if (!Number.isFinite(share)) return muted;
+    return chosen.ramp[Math.round(Math.min(Math.max(share, 0), 1) * STEPS)];
+  }
 
   const intervals = new Map();
   for (const interval of data.flagged.filter(({ kind }) => kind === "blocked")) {
@@ -92,7 +166,7 @@ function startMap(data, clock, plots) {
   }));
 
   function drawLine({ edge, stops, flow, halo, arrow }) {
-    const [a, b] = endTemperatures(edge);
+    const [a, b] = chosen.ends(edge);
     stops[0].setAttribute("stop-color", colour(a));
     stops[1].setAttribute("stop-color", colour(b));
     const m = at(edge.flow);
@@ -100,19 +174,19 @@ function startMap(data, clock, plots) {
     const width = gap * (0.14 + 0.5 * Math.sqrt(share));
     flow.setAttribute("stroke-width", width.toFixed(2));
     halo.setAttribute("stroke-width", (width + 0.2 * gap).toFixed(2));
-    arrow.style.display = share < 0.002 ? "none" : "";
+    arrow.style.display = Math.abs(m) > RESTING ? "" : "none";
     arrow.setAttribute("fill", colour((a + b) / 2));
     arrow.setAttribute("transform", m < 0 ? "rotate(180)" : "");
   }
 
   function drawSite({ vertex, group, hot, cold, way, state }) {
-    const t = (node) => colour(node ? at(node.t) : NaN);
-    hot?.setAttribute("fill", t(vertex.hot ?? vertex.cold));
-    cold?.setAttribute("fill", t(vertex.cold ?? vertex.hot));
+    const fill = (node) => (node && chosen.node ? colour(chosen.node(node)) : blank);
+    hot?.setAttribute("fill", fill(vertex.hot ?? vertex.cold));
+    cold?.setAttribute("fill", fill(vertex.cold ?? vertex.hot));
     if (!vertex.stations.length) return;
     const flows = vertex.stations.map((station) => at(station.flow)).filter(Number.isFinite);
     const m = flows.length ? flows.reduce((sum, flow) => sum + flow, 0) : NaN;
-    const idle = !(Math.abs(m) > 0.002 * stationMax);
+    const idle = !(Math.abs(m) > RESTING);
     const blocked = vertex.stations.some(blockedSince);
     group.classList.toggle("idle", idle);
     group.classList.toggle("blocked", blocked);
@@ -148,6 +222,7 @@ function startMap(data, clock, plots) {
     const rows = [["kind", edge.kind.replaceAll("_", " ") + size], ["flow", show(at(edge.flow), FLOW)]];
     const [a, b] = endTemperatures(edge).map((t) => show(t, TEMPERATURE));
     rows.push(["at a, at b", `${a}, ${b}`]);
+    if (edge.area > 0) rows.push(["velocity", show(speedOf(edge, at(edge.flow)), VELOCITY)]);
     if (edge.dp !== null) rows.push(["pressure a − b", show(at(edge.dp), PRESSURE)]);
     if (edge.loss !== null) rows.push(["heat loss", show(at(edge.loss), HEAT)]);
     if (edge.speed !== null) rows.push(["speed", show(at(edge.speed), { unit: "–", factor: 1, offset: 0 })]);
@@ -205,13 +280,59 @@ function startMap(data, clock, plots) {
   });
   window.addEventListener("scroll", () => showTip(null), { passive: true });
 
-  startZoom(svg);
-  clock.listen(() => {
+  const look = startZoom(svg);
+  startFind();
+  function draw() {
+    [muted, blank] = [css("--muted"), css("--rule")];
     lines.forEach(drawLine);
     sites.forEach(drawSite);
     fillTip();
     svg.dataset.frame = clock.index;
+  }
+  const select = document.getElementById("quantity");
+  select.addEventListener("change", () => {
+    choose(select.value);
+    draw();
   });
+  const speeds = edges.some((edge) => edge.area > 0);
+  select.querySelector("[value=velocity]").disabled = !speeds;
+  if (select.value === "velocity" && !speeds) select.value = "temperature";
+  choose(select.value);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  clock.listen(draw);
+
+  /** A name leads to its place: the map goes there, its curves are added. */
+  function startFind() {
+    const input = document.getElementById("find");
+    const found = document.getElementById("found");
+    const names = document.getElementById("places");
+    for (const { vertex } of sites) names.appendChild(make("option")).value = vertex.name;
+    let marked = null;
+    input.addEventListener("change", () => {
+      marked?.classList.remove("found");
+      marked = null;
+      const wanted = input.value.trim().toLowerCase();
+      found.textContent = "";
+      svg.dataset.found = "";
+      if (!wanted) return;
+      const by = (test) => sites.find(({ vertex }) => test(vertex.name)) ?? lines.find(({ edge }) => test(edge.id));
+      const item =
+        by((name) => name.toLowerCase() === wanted) ?? by((name) => name.toLowerCase().includes(wanted));
+      if (!item) {
+        found.textContent = "nothing has this name";
+        return;
+      }
+      marked = item.group;
+      marked.classList.add("found");
+      const name = item.vertex ? item.vertex.name : item.edge.id;
+      found.textContent = name;
+      svg.dataset.found = name;
+      const box = (item.vertex ? item.group : item.flow).getBBox();
+      const shift = item.vertex ? item.group.transform.baseVal.consolidate().matrix : { e: 0, f: 0 };
+      look(box.x + box.width / 2 + shift.e, box.y + box.height / 2 + shift.f);
+      if (item.vertex) plots.add(name);
+    });
+  }
 }
 
 /** Buttons, ctrl + wheel and dragging change the part of the map that is seen. */
@@ -236,6 +357,13 @@ function startZoom(svg) {
       width,
       height,
     };
+    apply();
+  }
+  /** Shows the surroundings of a point, at least as large as names need. */
+  function look(x, y) {
+    const share = Math.min(view.width / full.width, Math.max(1 / 40, Number(svg.dataset.font) / 11));
+    const [width, height] = [full.width * share, full.height * share];
+    view = { x: x - width / 2, y: y - height / 2, width, height };
     apply();
   }
   document.getElementById("zoom-in").addEventListener("click", () => zoom(1 / 1.5));
@@ -263,4 +391,5 @@ function startZoom(svg) {
     held = [event.clientX, event.clientY];
     apply();
   });
+  return look;
 }

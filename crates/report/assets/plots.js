@@ -3,7 +3,7 @@
 
 const COLOURS = 8;
 const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3]];
-const LEAST_SPAN = { "l/min": 0.1, bar: 0.01, "°C": 0.5, "–": 0.1 };
+const LEAST_SPAN = { "l/min": 0.1, bar: 0.01, "°C": 0.5, kW: 0.01, "–": 0.1 };
 const HEIGHT = 230;
 const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
 
@@ -248,8 +248,16 @@ function startPlots(data, clock) {
   }
   const redraw = () => panels.forEach((panel) => panel.redraw());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  const keys = new Set(data.plots.flatMap(({ panels }) => panels.flatMap(({ series }) => series.map((s) => s.key))));
+  const add = (key) => panels.forEach((panel) => panel.addPlace(key));
   return {
-    add: (key) => panels.forEach((panel) => panel.addPlace(key)),
+    add,
+    /** Curves of the place that a component belongs to. */
+    addComponent(name) {
+      for (let key = name; key; key = key.includes(".") ? key.slice(0, key.lastIndexOf(".")) : "") {
+        if (keys.has(key)) return add(key);
+      }
+    },
     resize: (width) => panels.forEach((panel) => panel.resize(width)),
   };
 }

@@ -21,7 +21,7 @@ function make(tag, className, text) {
   return element;
 }
 
-const DECIMALS = { "l/min": 2, bar: 3, "°C": 1, kW: 2, "–": 2 };
+const DECIMALS = { "l/min": 2, bar: 3, "°C": 1, kW: 2, "m/s": 3, "–": 2 };
 
 /** A value in SI as text in its display unit; `bare` leaves the unit out. */
 function show(si, display, bare) {
@@ -140,6 +140,29 @@ function startControls(data, clock) {
   });
 }
 
+/** The model file goes to the clipboard or into a file. */
+function startModel() {
+  const text = document.querySelector("pre[data-model]").textContent;
+  const done = document.getElementById("model-done");
+  document.getElementById("copy-model").addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(text);
+      done.textContent = "copied";
+    } catch {
+      // Without the right to the clipboard the text is selected: the keyboard copies it.
+      getSelection().selectAllChildren(document.querySelector("pre[data-model]"));
+      done.textContent = "selected";
+    }
+  });
+  document.getElementById("save-model").addEventListener("click", () => {
+    const link = make("a");
+    link.href = URL.createObjectURL(new Blob([text], { type: "application/toml" }));
+    link.download = "model.toml";
+    link.click();
+    URL.revokeObjectURL(link.href);
+  });
+}
+
 /** On paper: light colours, page width, details that belong there. */
 function startPrinting(plots) {
   const root = document.documentElement;
@@ -165,6 +188,8 @@ function start() {
   startControls(data, clock);
   const plots = startPlots(data, clock);
   startMap(data, clock, plots);
+  startIndicators(data, plots);
+  startModel();
   startPrinting(plots);
   clock.set(clock.index);
   document.body.dataset.ready = "1";

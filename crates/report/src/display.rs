@@ -43,6 +43,11 @@ impl Display {
         Self::of("kw", "kW")
     }
 
+    /// Velocity, m/s.
+    pub fn velocity() -> Self {
+        Self { unit: "m/s", factor: 1.0, offset: 0.0 }
+    }
+
     /// Speeds and openings, 1.
     pub fn ratio() -> Self {
         Self { unit: "–", factor: 1.0, offset: 0.0 }

@@ -43,6 +43,12 @@ pub fn base64_f32(values: &[f32]) -> String {
     base64(&bytes)
 }
 
+/// Little-endian 16-bit numbers in base64.
+pub fn base64_u16(values: &[u16]) -> String {
+    let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    base64(&bytes)
+}
+
 /// Little-endian 64-bit floats in base64.
 pub fn base64_f64(values: &[f64]) -> String {
     let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();

@@ -7,10 +7,12 @@
 //! What a model can name is text of strangers: everything goes through `escape` on its way into
 //! the page, and the page's script writes text only.
 
+mod collect;
 mod decimate;
 mod display;
 mod drawing;
 mod escape;
+mod indicators;
 mod layout;
 mod lookup;
 mod map;

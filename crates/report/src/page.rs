@@ -2,6 +2,7 @@
 
 use crate::display::{self, Display};
 use crate::escape::{self, html};
+use crate::indicators::{self, Indicators};
 use crate::lookup::Lookup;
 use crate::map::{self, Map, MapData};
 use crate::series::{self, Flagged, Plot, Plots};
@@ -13,9 +14,10 @@ use serde::Serialize;
 const UPLOT_JS: &str = include_str!("../vendor/uplot-1.6.32/uPlot.iife.min.js");
 const UPLOT_CSS: &str = include_str!("../vendor/uplot-1.6.32/uPlot.min.css");
 const CSS: &str = include_str!("../assets/report.css");
-const SCRIPTS: [&str; 3] = [
+const SCRIPTS: [&str; 4] = [
     include_str!("../assets/map.js"),
     include_str!("../assets/plots.js"),
+    include_str!("../assets/indicators.js"),
     include_str!("../assets/report.js"),
 ];
 /// Settings that stand at the top; all of them are among the details.
@@ -29,12 +31,14 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 struct Data<'a> {
     start_unix_ms: Option<f64>,
     end_s: f64,
+    density_kg_m3: f64,
     units: Units,
     /// Times of the points of the plots, s, base64 of 64-bit floats.
     times: String,
     plots: &'a [Plot],
     flagged: &'a [Flagged],
     map: &'a MapData,
+    indicators: Vec<Indicators>,
 }
 
 /// Display units of the map.
@@ -44,6 +48,7 @@ struct Units {
     pressure: Display,
     temperature: Display,
     heat: Display,
+    velocity: Display,
 }
 
 /// The whole document.
@@ -79,6 +84,7 @@ pub fn page(recording: &Recording) -> String {
         run = section("run", "Run", &parts.run()),
     );
     out += &parts.timed();
+    out += &section("indicators", "Indicators", &indicators::section(&recording.summary));
     out += &section(
         "balances",
         "Balances",
@@ -88,7 +94,7 @@ pub fn page(recording: &Recording) -> String {
     out += &section("more", "Details", &details(recording));
     out += &format!(
         r#"</main>
-<noscript><p class="notice">Map and plots need JavaScript; the tables do not.</p></noscript>
+<noscript><p class="notice">Map, plots and indicators need JavaScript; the other tables do not.</p></noscript>
 <footer>Made by anergy. This file is complete: it loads nothing from a network. Plots by uPlot 1.6.32 (MIT).</footer>
 <script type="application/json" id="anergy-data">{data}</script>
 <script>{UPLOT_JS}</script>
@@ -136,16 +142,19 @@ impl<'a> Parts<'a> {
         Data {
             start_unix_ms: (start != 0).then_some(start as f64 / 1e6),
             end_s: self.lookup.times().last().copied().unwrap_or(0.0),
+            density_kg_m3: self.density_kg_m3,
             units: Units {
                 flow: Display::flow(self.density_kg_m3),
                 pressure: Display::pressure(),
                 temperature: Display::temperature(),
                 heat: Display::heat(),
+                velocity: Display::velocity(),
             },
             times: escape::base64_f64(&self.plots.times),
             plots: &self.plots.plots,
             flagged: &self.flagged,
             map: &self.map.data,
+            indicators: indicators::tables(&self.recording.summary),
         }
     }
 
@@ -249,13 +258,15 @@ impl<'a> Parts<'a> {
             "Schematic, placed by pipe lengths"
         };
         format!(
-            r#"{none}<figure class="map"><div class="tools">
+            r#"{none}<div class="choose"><label>Colour <select id="quantity" autocomplete="off"><option value="temperature">Temperature</option><option value="flow">Flow</option><option value="pressure">Pressure</option><option value="velocity">Velocity</option></select></label>
+<label class="find">Find <input id="find" type="search" list="places" placeholder="a site or pipe" autocomplete="off"><datalist id="places"></datalist></label><span id="found" role="status"></span></div>
+<figure class="map"><div class="tools">
 <button type="button" id="zoom-in" aria-label="Zoom in">+</button>
 <button type="button" id="zoom-out" aria-label="Zoom out">−</button>
 <button type="button" id="zoom-all" aria-label="Show all">⤢</button></div>
 <div class="canvas">{svg}</div>
 <figcaption><span id="map-time"></span>
-<span class="scale" aria-label="Colours of temperatures"><span id="t-min">–</span><span class="bar" aria-hidden="true"></span><span id="t-max">–</span></span>
+<span class="scale" aria-label="Colours"><span id="c-name"></span><span id="c-min">–</span><span class="bar" id="c-bar" aria-hidden="true"></span><span id="c-max">–</span></span>
 <span>Width of a line: flow, at most <span id="flow-max">–</span></span>
 {stations}
 <span>{placed}</span></figcaption></figure><div id="tip" role="tooltip" hidden></div>"#,
@@ -327,7 +338,7 @@ fn details(recording: &Recording) -> String {
     let settings = settings.iter().map(|(name, value)| (name.as_str(), value.clone()));
     format!(
         r#"<details data-print="open"><summary>Settings, versions and statistics</summary>{}{}</details>
-<details><summary>Model file</summary><pre data-model tabindex="0">{}</pre></details>
+<details id="model-file"><summary>Model file</summary><p class="actions"><button type="button" id="copy-model">Copy</button><button type="button" id="save-model">Save as model.toml</button><span id="model-done" role="status"></span></p><pre data-model tabindex="0">{}</pre></details>
 <details><summary>Recorded channels ({})</summary>{}</details>"#,
         tables::pairs("settings", settings),
         tables::statistics(&recording.summary),

@@ -1,13 +1,13 @@
 //! Which series the plots offer, which of them are shown first, and the intervals that are shaded.
 
+use crate::collect::{Collector, Source};
 use crate::decimate::Buckets;
 use crate::display::Display;
 use crate::escape;
 use crate::lookup::{Lookup, value};
 use crate::sites::SiteGraph;
-use anergy_core::recorder::ChannelGroup::{Edges, Interfaces, Nodes, Units};
+use anergy_core::recorder::ChannelGroup::Interfaces;
 use serde::Serialize;
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Points of a series at most.
@@ -24,7 +24,7 @@ const SHOWN_SERIES: usize = 12;
 /// One plot of the report: one or more panels of one subject.
 #[derive(Debug, Serialize)]
 pub struct Plot {
-    /// `flows`, `pressures`, `temperatures`, `speeds`.
+    /// `flows`, `pressures`, `temperatures`, `heat`, `speeds`.
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
@@ -77,18 +77,12 @@ pub struct Flagged {
 
 /// All that the plots draw.
 pub struct Plots {
-    /// The four plots.
+    /// The plots.
     pub plots: Vec<Plot>,
     /// Times of the points, s.
     pub times: Vec<f64>,
     /// Whether points stand for several rows.
     pub decimated: bool,
-}
-
-struct Source<'a> {
-    name: String,
-    key: String,
-    column: Cow<'a, [f64]>,
 }
 
 struct Draft<'a> {
@@ -120,6 +114,17 @@ pub fn plots(lookup: &Lookup, sites: &SiteGraph, flagged: &[Flagged], density_kg
             vec![
                 draft("Temperature", Display::temperature(), collector.outer_nodes("t_k")),
                 draft("Rooms and storages", Display::temperature(), collector.houses()),
+            ],
+        ),
+        (
+            "heat",
+            "Heat and electricity",
+            "Heat of stations: positive into the water of the grid. Heat of units: as each counts it.",
+            vec![
+                draft("Heat of stations", Display::heat(), collector.stations("q_flow_w")),
+                draft("Heat of units", Display::heat(), collector.unit_heat()),
+                draft("Electricity", Display::heat(), collector.electricity()),
+                draft("State of charge", Display::ratio(), collector.units("soc")),
             ],
         ),
         (
@@ -225,90 +230,6 @@ fn rank(sources: &[Source], rows: usize, stuck: &BTreeSet<&str>) -> Vec<(String,
         stuck.then(change).then(b.magnitude.total_cmp(&a.magnitude)).then(a.order.cmp(&b.order))
     });
     scores.into_iter().map(|score| (score.key, score.size)).collect()
-}
-
-struct Collector<'a, 'b> {
-    lookup: &'b Lookup<'a>,
-    sites: &'b SiteGraph,
-}
-
-impl<'a> Collector<'a, '_> {
-    fn source(&self, component: &str, quantity: &str, name: String) -> Option<Source<'a>> {
-        let column = Cow::Borrowed(self.lookup.column(component, quantity)?);
-        Some(Source { name, key: self.sites.place_of(component).to_owned(), column })
-    }
-
-    /// Interfaces with their requests; without interfaces pumps, and without those all edges.
-    fn flows(&self) -> (Vec<Source<'a>>, &'static str) {
-        const FLOW: &str = "m_flow_kg_s";
-        const REQUEST: &str = "requested_m_flow_kg_s";
-        let mut sources = Vec::new();
-        for component in self.lookup.components(Interfaces, FLOW) {
-            sources.extend(self.source(component, FLOW, component.to_owned()));
-            sources.extend(self.source(component, REQUEST, format!("{component} requested")));
-        }
-        if !sources.is_empty() {
-            return (sources, "Stations: positive feeds in (cold to hot), negative extracts.");
-        }
-        let edges = &self.lookup.recording.header.map.edges;
-        let flow = |id: &str| self.source(id, FLOW, id.to_owned());
-        let pumps = edges.iter().filter(|edge| edge.kind.contains("pump"));
-        let pumps: Vec<Source> = pumps.filter_map(|edge| flow(&edge.id)).collect();
-        if !pumps.is_empty() {
-            return (pumps, "Pumps: positive in the direction of the pump.");
-        }
-        let all = self.lookup.components(Edges, FLOW).filter_map(flow).collect();
-        (all, "Edges: positive from port a to port b.")
-    }
-
-    /// A quantity of the nodes on the map: hot and cold nodes of sites, and plain nodes.
-    fn outer_nodes(&self, quantity: &str) -> Vec<Source<'a>> {
-        let nodes = &self.lookup.recording.header.map.nodes;
-        let outer = self.sites.vertices.iter().flat_map(|vertex| [vertex.hot, vertex.cold]);
-        let ids = outer.flatten().filter_map(|index| nodes.get(index)).map(|node| &node.id);
-        let mut sources: Vec<Source> =
-            ids.filter_map(|id| self.source(id, quantity, id.clone())).collect();
-        if sources.is_empty() {
-            let all = self.lookup.components(Nodes, quantity);
-            sources = all.filter_map(|id| self.source(id, quantity, id.to_owned())).collect();
-        }
-        sources
-    }
-
-    /// Pressure of the hot node minus that of the cold node: of sites with station, or else of all.
-    fn differences(&self) -> Vec<Source<'a>> {
-        let nodes = &self.lookup.recording.header.map.nodes;
-        let column = |node: Option<usize>| self.lookup.column(&nodes.get(node?)?.id, "p_pa");
-        let difference = |vertex: &crate::sites::Vertex| {
-            let (hot, cold) = (column(vertex.hot)?, column(vertex.cold)?);
-            let column = hot.iter().zip(cold).map(|(hot, cold)| hot - cold).collect();
-            let key = vertex.name.clone();
-            Some(Source { name: key.clone(), key, column: Cow::Owned(column) })
-        };
-        let vertices = &self.sites.vertices;
-        let any = vertices.iter().any(|vertex| !vertex.stations.is_empty());
-        let wanted = vertices.iter().filter(|vertex| !any || !vertex.stations.is_empty());
-        wanted.filter_map(difference).collect()
-    }
-
-    /// Rooms, and bottom and top of storages.
-    fn houses(&self) -> Vec<Source<'a>> {
-        let rooms = self.lookup.components(Units, "t_room_k");
-        let mut sources: Vec<Source> =
-            rooms.filter_map(|id| self.source(id, "t_room_k", id.to_owned())).collect();
-        for id in self.lookup.components(Units, "t_1_k") {
-            let layer = |layer: &usize| self.lookup.column(id, &format!("t_{layer}_k")).is_some();
-            let top = (1..).take_while(layer).last().unwrap_or(1);
-            sources.extend(self.source(id, "t_1_k", format!("{id} bottom")));
-            sources.extend(self.source(id, &format!("t_{top}_k"), format!("{id} top")));
-        }
-        sources
-    }
-
-    fn edges(&self, quantity: &str) -> Vec<Source<'a>> {
-        let all = self.lookup.components(Edges, quantity);
-        all.filter_map(|id| self.source(id, quantity, id.to_owned())).collect()
-    }
 }
 
 /// Flagged intervals: from the events of a component, which have exact times; blocked ones without

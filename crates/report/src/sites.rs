@@ -201,7 +201,15 @@ mod tests {
 
     fn edge(id: &str, from: &str, to: &str, station: &str) -> MapEdge {
         let [id, from, to, station] = [id, from, to, station].map(str::to_owned);
-        MapEdge { id, kind: "pipe".to_owned(), from, to, length_m: 10.0, station }
+        MapEdge {
+            id,
+            kind: "pipe".to_owned(),
+            from,
+            to,
+            length_m: 10.0,
+            inner_diameter_m: 0.02,
+            station,
+        }
     }
 
     #[test]

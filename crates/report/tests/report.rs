@@ -6,8 +6,9 @@ use anergy_core::clock::Time;
 use anergy_core::recorder::{Event, Recording, Severity};
 use anergy_report::html;
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 
-const SCRIPTS: usize = 5;
+const SCRIPTS: usize = 6;
 
 /// The embedded data.
 #[allow(clippy::unwrap_used, reason = "a helper of tests")]
@@ -39,7 +40,7 @@ fn map_plots_and_tables_are_there() {
     let page = html(&synthetic::three_houses());
     assert!(page.contains("<body data-anergy-report=\"1\" data-rows=\"361\" data-sites=\"3\" data-summary=\"present\">"));
     assert!(page.contains("<svg data-map=\"network\" data-sites=\"3\" data-lines=\"4\""));
-    for plot in ["flows", "pressures", "temperatures", "speeds"] {
+    for plot in ["flows", "pressures", "temperatures", "heat", "speeds"] {
         assert!(page.contains(&format!("data-plot=\"{plot}\"")), "{plot}");
     }
     for table in ["key-numbers", "balances", "pipes", "events", "channels"] {
@@ -80,7 +81,7 @@ fn hostile_text_is_inert() {
 fn unusual_recordings_give_a_report() {
     let empty = html(&Recording::default());
     assert!(empty.contains("data-rows=\"0\"") && empty.contains("data-notice=\"empty\""));
-    for plot in ["flows", "pressures", "temperatures", "speeds"] {
+    for plot in ["flows", "pressures", "temperatures", "heat", "speeds"] {
         assert!(empty.contains(&format!("data-plot=\"{plot}\" data-series=\"0\"")), "{plot}");
     }
     let mut interrupted = synthetic::three_houses();
@@ -106,7 +107,7 @@ fn unusual_recordings_give_a_report() {
 fn plain_networks_show_pumps() {
     let data = data(&html(&synthetic::plain(3)));
     assert_eq!(data["plots"][0]["panels"][0]["series"][0]["name"], "pump");
-    assert_eq!(data["plots"][3]["panels"][0]["series"][0]["name"], "pump");
+    assert_eq!(data["plots"][4]["panels"][0]["series"][0]["name"], "pump");
     assert_eq!(data["map"]["edges"].as_array().unwrap().len(), 4);
 }
 
@@ -145,12 +146,38 @@ fn same_recording_same_bytes() {
 fn vendored_uplot_is_the_stated_one() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/vendor/uplot-1.6.32");
     let readme = std::fs::read_to_string(format!("{folder}/README.md")).unwrap();
-    for (file, bytes) in [("uPlot.iife.min.js", 51_081), ("uPlot.min.css", 1857), ("LICENSE", 1078)]
-    {
+    for (file, sha256) in [
+        ("uPlot.iife.min.js", "19c8d4c6ad88929a79f4ae49d6f7161566dfd0ba3d15cc495e974f787eb78f1f"),
+        ("uPlot.min.css", "df630c6a8d6f8eeaff264b50f73ce5b114f646ffd9a0bb74f049b0a00135fa04"),
+        ("LICENSE", "8f989229699b4fe2f1a0432d0e9edc338a8a911e250e2d1b01ecd770a5f5b1bd"),
+    ] {
         let content = std::fs::read(format!("{folder}/{file}")).unwrap();
-        assert_eq!(content.len(), bytes, "{file}");
-        assert!(readme.contains(&format!("| `{file}` | {bytes} |")), "{file}");
+        let sum: String =
+            Sha256::digest(&content).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(sum, sha256, "{file}");
+        assert!(
+            readme.contains(&format!("| `{file}` | {} | `{sha256}` |", content.len())),
+            "{file}"
+        );
     }
+}
+
+#[test]
+fn indicators_and_heat_are_shown() {
+    let mut recording = synthetic::three_houses();
+    recording.summary["kpis"] = serde_json::json!({
+        "network": {"heat_lost_kwh": 4.25},
+        "stations": {"sf1.station": {"blocked_h": 0.6}, "sf2.station": {"heat_given_kwh": 9.4}},
+        "units": {synthetic::EVIL: {"starts": 3}},
+    });
+    let page = html(&recording);
+    assert!(page.contains("<dt>heat lost</dt><dd>4.25 kWh</dd>"));
+    assert!(page.contains(r#"data-indicators="stations""#) && page.contains("Units (1)"));
+    let data = data(&page);
+    assert_eq!(data["indicators"][0]["columns"][0]["name"], "blocked");
+    assert_eq!(data["indicators"][1]["rows"][0][0], synthetic::EVIL);
+    assert_eq!(data["plots"][3]["id"], "heat");
+    assert_eq!(data["plots"][3]["panels"][0]["series"][0]["name"], "sf1.station");
 }
 
 #[test]

@@ -379,14 +379,14 @@ fn start_unix_ns(model: &Model) -> i64 {
 }
 
 fn edges_on_map(model: &Model) -> Vec<EdgeOnMap> {
-    let length_m = |params: &ElementParams| match params {
-        ElementParams::Pipe(pipe) => pipe.length_m,
-        _ => 0.0,
+    let size = |params: &ElementParams| match params {
+        ElementParams::Pipe(pipe) => (pipe.length_m, pipe.inner_diameter_m),
+        _ => (0.0, 0.0),
     };
-    let edges = model.edges.iter().map(|spec| EdgeOnMap {
-        kind: spec.params.kind(),
-        length_m: length_m(&spec.params),
-        station: spec.station.clone(),
+    let edges = model.edges.iter().map(|spec| {
+        let (kind, station) = (spec.params.kind(), spec.station.clone());
+        let (length_m, inner_diameter_m) = size(&spec.params);
+        EdgeOnMap { kind, length_m, inner_diameter_m, station }
     });
     edges.collect()
 }

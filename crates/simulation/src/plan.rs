@@ -178,6 +178,7 @@ pub(crate) struct NodeOnMap {
 pub(crate) struct EdgeOnMap {
     pub kind: &'static str,
     pub length_m: f64,
+    pub inner_diameter_m: f64,
     pub station: SmolStr,
 }
 
@@ -360,6 +361,7 @@ impl Plan {
                 from: self.node_names[ends.from.index()].to_string(),
                 to: self.node_names[ends.to.index()].to_string(),
                 length_m: edge.length_m,
+                inner_diameter_m: edge.inner_diameter_m,
                 station: edge.station.to_string(),
             }
         });

@@ -7,7 +7,7 @@ use anergy_import::geojson;
 use anergy_recording::selection::choose;
 use anergy_simulation::model_file::Duration;
 use serde_json::{Map, Value};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 /// What is written of a recording.
@@ -114,8 +114,12 @@ fn csv(results: &Path, out: &Path, options: &CsvOptions) -> Result<(), Failure> 
     let chosen = choose(&recording.channels, &options.channels, &options.units)
         .map_err(|problem| Failure::Usage(problem.to_string()))?;
     let file = BufWriter::new(output::create(out)?);
-    let size = anergy_recording::write_csv(recording, &chosen, every_s, file)
-        .map_err(|error| Failure::file("cannot write", out, &error))?;
+    let size = match anergy_recording::write_csv(recording, &chosen, every_s, file) {
+        Ok(size) => size,
+        // Nobody reads any more (`| head`).
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
+        Err(error) => return Err(Failure::file("cannot write", out, &error)),
+    };
     if out == Path::new("-") {
         return Ok(());
     }

@@ -1,3 +1,5 @@
+#![allow(clippy::needless_pass_by_value, reason = "values of json! are used once")]
+
 use super::{GeojsonOptions, export, import};
 use crate::{Import, NoteKind};
 use serde_json::{Value, json};

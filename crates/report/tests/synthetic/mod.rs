@@ -57,6 +57,7 @@ pub fn edge(
         from: ends[0].to_owned(),
         to: ends[1].to_owned(),
         length_m,
+        inner_diameter_m: if length_m > 0.0 { 0.02 } else { 0.0 },
         station: station.to_owned(),
     });
     push(recording, ChannelGroup::Edges, id, "m_flow_kg_s", flow);
