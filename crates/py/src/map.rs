@@ -85,16 +85,21 @@ impl Model {
             x_m: node.entry.x_m,
             y_m: node.entry.y_m,
         });
-        let edges = self.model.edges.iter().map(|edge| MapEdge {
-            id: edge.id.to_string(),
-            kind: edge.params.kind().to_owned(),
-            from: edge.from.to_string(),
-            to: edge.to.to_string(),
-            length_m: match &edge.params {
-                ElementParams::Pipe(pipe) => pipe.length_m,
-                _ => 0.0,
-            },
-            station: edge.station.to_string(),
+        let size = |params: &ElementParams| match params {
+            ElementParams::Pipe(pipe) => (pipe.length_m, pipe.inner_diameter_m),
+            _ => (0.0, 0.0),
+        };
+        let edges = self.model.edges.iter().map(|edge| {
+            let (length_m, inner_diameter_m) = size(&edge.params);
+            MapEdge {
+                id: edge.id.to_string(),
+                kind: edge.params.kind().to_owned(),
+                from: edge.from.to_string(),
+                to: edge.to.to_string(),
+                length_m,
+                inner_diameter_m,
+                station: edge.station.to_string(),
+            }
         });
         NetworkMap { nodes: nodes.collect(), edges: edges.collect() }
     }
