@@ -9,6 +9,7 @@ pub mod effectiveness;
 pub mod error;
 pub mod ids;
 pub mod linear;
+pub mod local_plane;
 pub mod medium;
 pub mod numerics;
 pub mod port;

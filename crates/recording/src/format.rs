@@ -5,6 +5,7 @@ use anergy_core::clock::{NS_PER_S, Time};
 use anergy_core::recorder::{Channel, Event, Severity};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 
 /// Version of the file layout; readers refuse higher ones.
@@ -21,6 +22,11 @@ pub(crate) const NETWORK: &str = "network.json";
 pub(crate) const SUMMARY: &str = "summary.json";
 /// Topic of the events.
 pub(crate) const EVENTS: &str = "/events";
+
+/// SHA-256 of a text, in hexadecimal digits.
+pub(crate) fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
 /// The parts of the run header that need exact order or names.
 #[derive(Debug, Serialize, Deserialize)]

@@ -8,7 +8,7 @@
 //!
 //! | Record | Content |
 //! |---|---|
-//! | metadata `anergy` | `model_name`, `start_unix_ns`, `format_version` and every setting of the run |
+//! | metadata `anergy` | `model_name`, `model_sha256` of the model file, `start_unix_ns`, `format_version` and every setting of the run, with the seeds of random numbers |
 //! | attachment `header.json` | version, name, start, settings in order, channels in order with unit and group |
 //! | attachment `model.toml` | the model file as the user wrote it |
 //! | attachment `network.json` | geometry of the network |
@@ -30,6 +30,9 @@
 //! Events are messages of the topic `/events` in the form of `foxglove.Log`, with the additional
 //! field `kind`.
 //!
+//! The network is one message of the topic `/network/map` in the form of `foxglove.GeoJSON`, where the model has
+//! positions.
+//!
 //! Times of messages are `start_unix_ns` plus simulated time, never wall time. The same run gives
 //! the same bytes, unless it is so slow that chunks are closed early (see below).
 //!
@@ -45,6 +48,7 @@
 mod csv_writer;
 mod format;
 mod layout;
+mod map_message;
 mod mcap_reader;
 mod mcap_writer;
 pub mod selection;

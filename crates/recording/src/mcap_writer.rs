@@ -2,6 +2,7 @@
 
 use crate::format::{self, HeaderDocument, LogMessage};
 use crate::layout::{Layout, schema_name};
+use crate::map_message;
 use anergy_core::clock::Time;
 use anergy_core::error::RecordError;
 use anergy_core::recorder::{Channel, ChannelGroup, Event, Recorder, RunHeader};
@@ -94,6 +95,7 @@ impl McapRecorder {
         metadata.insert("format_version".into(), format::VERSION.to_string());
         metadata.insert("model_name".into(), header.model_name.clone());
         metadata.insert("start_unix_ns".into(), header.start_unix_ns.to_string());
+        metadata.insert("model_sha256".into(), format::sha256(&header.model_text));
         self.writer.write_metadata(&Metadata { name: format::METADATA.into(), metadata })?;
 
         let start_unix_ns = header.start_unix_ns;
@@ -122,6 +124,15 @@ impl McapRecorder {
         }
         let schema = format::log_schema().to_string();
         let events_channel = self.add_channel("foxglove.Log", &schema, format::EVENTS)?;
+        if let Some(message) = map_message::message(header) {
+            let schema = map_message::schema().to_string();
+            let channel_id = self.add_channel(map_message::SCHEMA, &schema, map_message::TOPIC)?;
+            let time = format::log_time(start_unix_ns, Time::ZERO);
+            let header =
+                MessageHeader { channel_id, sequence: 0, log_time: time, publish_time: time };
+            let text = serde_json::to_vec(&message).map_err(io::Error::from)?;
+            self.writer.write_to_known_channel(&header, &text)?;
+        }
         Ok(Run {
             start_unix_ns,
             channels: channels.len(),

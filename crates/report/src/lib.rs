@@ -1,7 +1,7 @@
 //! A recording becomes one self-contained HTML report.
 //!
 //! [`html`] gives a page that opens from disk without a network: key numbers, a map of the network
-//! with a time slider, four linked plots, balances, events, and what is needed to repeat the run.
+//! with a time slider, linked plots, indicators, balances, events, and what is needed to repeat the run.
 //! Recorded values stay in SI inside the page; l/min, bar, °C and kW are made where they are shown.
 //!
 //! What a model can name is text of strangers: everything goes through `escape` on its way into

@@ -88,6 +88,7 @@ mod tests {
             from: from.to_owned(),
             to: to.to_owned(),
             length_m: 5.0,
+            inner_diameter_m: 0.02,
             station: String::new(),
         };
         let map = NetworkMap {

@@ -253,6 +253,7 @@ impl Builder<'_> {
             model_text: model.text.clone(),
             start_unix_ns: start_unix_ns(model),
             origin_rad: model.origin_rad,
+            seeds: model.seeds(),
             step: steps.0.shortest(),
             stepping: steps.0,
             automatic: AutomaticStep::of(&self.model.run),

@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostics;
 use crate::effect::EffectSpec;
 use crate::model_file::{
     GroundEntry, InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry,
-    RunEntry, WeatherEntry, WorstPointEntry,
+    RunEntry, WeatherEntry, WeatherKind, WorstPointEntry,
 };
 use crate::table::Tables;
 use crate::weather::Records;
@@ -260,6 +260,15 @@ impl Model {
         };
         // Through the text, so that places and hints are those of the file the user could save.
         Self::from_toml(&text, dir)
+    }
+
+    /// Starts of random numbers that are drawn: who draws, and the seed.
+    pub fn seeds(&self) -> Vec<(String, u64)> {
+        let weather = self.weather.iter().map(|weather| &weather.entry);
+        let weather = weather.filter(|entry| entry.kind == WeatherKind::Synthetic);
+        let noisy = self.sensors.iter().map(|sensor| &sensor.entry).filter(|s| s.noise > 0.0);
+        let weather = weather.map(|entry| ("weather".to_owned(), entry.seed));
+        weather.chain(noisy.map(|sensor| (sensor.id.to_string(), sensor.seed))).collect()
     }
 
     /// The edge with a name.

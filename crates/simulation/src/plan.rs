@@ -247,6 +247,8 @@ pub struct Plan {
     pub(crate) start_unix_ns: i64,
     /// Latitude and longitude of the origin of the map, rad.
     pub(crate) origin_rad: Option<[f64; 2]>,
+    /// Starts of random numbers.
+    pub(crate) seeds: Vec<(String, u64)>,
     /// Largest fixed step, or shortest automatic one.
     pub(crate) step: Time,
     pub(crate) stepping: Step,

@@ -89,6 +89,9 @@ fn header(plan: &crate::plan::Plan, until: Time, step: Step, record: Time) -> Ru
         let deg = |rad: f64| rad.to_degrees().to_string();
         [setting("latitude_deg", deg(latitude)), setting("longitude_deg", deg(longitude))]
     });
+    let seeds: Vec<String> =
+        plan.seeds.iter().map(|(name, seed)| format!("{name} {seed}")).collect();
+    let seeds = (!seeds.is_empty()).then(|| setting("random_seeds", seeds.join(", ")));
     RunHeader {
         model_name: plan.model_name.clone(),
         model_text: plan.model_text.to_string(),
@@ -103,6 +106,7 @@ fn header(plan: &crate::plan::Plan, until: Time, step: Step, record: Time) -> Ru
         ]
         .into_iter()
         .chain(origin)
+        .chain(seeds)
         .collect(),
         map: plan.map(),
     }
