@@ -5,7 +5,7 @@
 use anergy_core::medium::Medium;
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
-use anergy_prosumer::equipment::{Equipment, EquipmentParams};
+use anergy_prosumer::equipment::{Equipment, EquipmentParams, WITHOUT_PORTS};
 use serde_json::{Value, json};
 
 /// What must be said of a kind; a new kind needs a line.
@@ -27,10 +27,24 @@ fn least(kind: &str) -> Value {
             "coils": { "solar": { "area_m2": 2.0, "inlet_m": 0.8, "outlet_m": 0.1 } },
             "rod": { "power_w": 6000.0, "bottom_m": 0.9, "top_m": 1.2 }
         }),
+        // Warm air, so that its pump runs at night.
+        "solar_collector" => json!({ "t_outdoor_k": 350.0 }),
+        "domestic_hot_water" => json!({ "daily_m3": 0.3, "circulation_loss_w": 100.0 }),
         "air_source_heat_pump"
         | "booster_heat_pump"
         | "booster_transfer_station"
-        | "direct_exchanger" => json!({}),
+        | "direct_exchanger"
+        | "brine_heat_pump"
+        | "mixing_station"
+        | "condensing_boiler"
+        | "chp"
+        | "stirling_chp"
+        | "pv"
+        | "battery"
+        | "household"
+        | "electric_load"
+        | "electric_vehicle"
+        | "grid_connection" => json!({}),
         _ => panic!("say in tests/every_unit.rs what a {kind} needs"),
     }
 }
@@ -55,6 +69,7 @@ fn outlet_k(outlet: &Outlet, m_flow_kg_s: f64, t_in_k: f64, cp: f64) -> f64 {
     let warmed = |q_w: f64| if capacity_w_k > 0.0 { t_in_k + q_w / capacity_w_k } else { t_in_k };
     match *outlet {
         Outlet::HeatFlow(q_w) => warmed(q_w),
+        Outlet::Warmed { wanted_w, hottest_k } => warmed(wanted_w).min(hottest_k.max(t_in_k)),
         Outlet::Cooled { wanted_w, coldest_k } => warmed(-wanted_w).max(coldest_k.min(t_in_k)),
         Outlet::Linear { constant_k, of_inlet } => constant_k + of_inlet * t_in_k,
         Outlet::Exchange { w_k, other_k } => {
@@ -74,7 +89,7 @@ fn step(
     random: &mut Stream,
 ) -> (f64, f64) {
     let cp = Medium::default().heat_capacity_j_kg_k;
-    let dt_s = [1.0, 10.0, 60.0, 300.0, 900.0][(random.next() * 5.0) as usize];
+    let dt_s = [1.0, 10.0, 60.0, 300.0, 900.0, 3600.0][(random.next() * 6.0) as usize];
     let signals: Vec<f64> = unit
         .inputs()
         .iter()
@@ -127,6 +142,7 @@ fn heat_closes_over_every_step() {
     for kind in EquipmentParams::KINDS {
         let params = EquipmentParams::deserialize(kind, least(kind)).unwrap().unwrap();
         let unit = params.build(&Medium::default()).unwrap();
+        assert_eq!(unit.ports().is_empty(), WITHOUT_PORTS.contains(kind), "{kind}");
         let mut random = Stream(42);
         let mut state = unit.initial_state(300.0);
         let mut out = vec![0.0; unit.outputs().len()];

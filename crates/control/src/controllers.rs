@@ -7,6 +7,7 @@ pub mod feed_forward;
 pub mod hysteresis;
 pub mod pi;
 pub mod storage_charging;
+pub mod tank_charging;
 pub mod thermostatic_valve;
 pub mod two_step;
 pub mod weighted_pi;
@@ -24,6 +25,8 @@ anergy_core::registry! {
         TwoStep("two_step", two_step::TwoStep, two_step::TwoStepParams),
         StorageCharging("storage_charging", storage_charging::StorageCharging, storage_charging::StorageChargingParams),
         Balancing("balancing", balancing::Balancing, balancing::BalancingParams),
+        TwoSensors("two_sensors", tank_charging::TankCharging, tank_charging::TwoSensorsParams),
+        TankCharging("tank_charging", tank_charging::TankCharging, tank_charging::TankChargingParams),
         FeedForward("feed_forward", feed_forward::FeedForward, feed_forward::FeedForwardParams),
     }
 }
@@ -34,6 +37,8 @@ pub fn ports(kind: &str) -> Ports {
         "balancing" => balancing::PORTS,
         "storage_charging" => storage_charging::PORTS,
         "cascade" => cascade::PORTS,
+        "tank_charging" => tank_charging::TANK,
+        "two_sensors" => tank_charging::TWO_SENSORS,
         "two_step" => two_step::PORTS,
         "weighted_pi" => weighted_pi::PORTS,
         _ => Ports::SINGLE,

@@ -59,6 +59,14 @@ pub enum Outlet {
         /// Lowest temperature at which it leaves, K.
         coldest_k: f64,
     },
+    /// It takes up heat, but leaves no hotter than a temperature; water that is hotter stays as it is. The limit
+    /// holds in circuits of houses and behind exchangers; water of the network itself takes up all of the heat.
+    Warmed {
+        /// Heat flow that is wanted into it, W.
+        wanted_w: f64,
+        /// Highest temperature at which it leaves, K.
+        hottest_k: f64,
+    },
     /// It leaves as what stands at that end: a store between two lines.
     Ends {
         /// Temperature at which it leaves through port a, where negative flow leaves, K.
@@ -91,7 +99,7 @@ impl Outlet {
             | Self::Ends { .. }
             | Self::Exchange { .. }
             | Self::Linear { .. } => None,
-            Self::HeatFlow(q_w) => Some(q_w),
+            Self::HeatFlow(q_w) | Self::Warmed { wanted_w: q_w, .. } => Some(q_w),
             Self::Cooled { wanted_w, .. } => Some(-wanted_w),
         }
     }

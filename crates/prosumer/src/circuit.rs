@@ -29,7 +29,8 @@ pub struct Undefined;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Limit {
     None,
-    Coldest,
+    /// The coldest, or the hottest outlet.
+    Bound,
     Passes,
 }
 
@@ -44,7 +45,7 @@ impl Limits {
     fn of(self, member: usize) -> Limit {
         match (self.0 >> (2 * member)) & 3 {
             0 => Limit::None,
-            1 => Limit::Coldest,
+            1 => Limit::Bound,
             _ => Limit::Passes,
         }
     }
@@ -62,11 +63,23 @@ fn relation(outlet: &Outlet, limit: Limit, capacity_w_k: f64) -> (f64, f64) {
         Outlet::HeatFlow(q_w) => warmed(q_w),
         Outlet::Linear { constant_k, of_inlet } => (constant_k, of_inlet),
         Outlet::Exchange { w_k, other_k } => Outlet::of_exchange(w_k, other_k, capacity_w_k),
-        Outlet::Cooled { wanted_w, coldest_k } => match limit {
-            Limit::None => warmed(-wanted_w),
-            Limit::Coldest => (coldest_k, 0.0),
-            Limit::Passes => (0.0, 1.0),
-        },
+        Outlet::Cooled { .. } | Outlet::Warmed { .. } => {
+            let (q_w, bound_k) = bounded(outlet).unwrap_or_default();
+            match limit {
+                Limit::None => warmed(q_w),
+                Limit::Bound => (bound_k, 0.0),
+                Limit::Passes => (0.0, 1.0),
+            }
+        }
+    }
+}
+
+/// Heat into the water and the temperature that its outlet does not pass.
+fn bounded(outlet: &Outlet) -> Option<(f64, f64)> {
+    match *outlet {
+        Outlet::Cooled { wanted_w, coldest_k } => Some((-wanted_w, coldest_k)),
+        Outlet::Warmed { wanted_w, hottest_k } => Some((wanted_w, hottest_k)),
+        _ => None,
     }
 }
 
@@ -110,13 +123,15 @@ impl Circuit {
                 let (c, f) = of(member);
                 let slot = self.members[member];
                 let t_out_k = c + f * t_k;
-                if let Outlet::Cooled { wanted_w, coldest_k } = wanted[slot].outlet {
-                    let (c, f) = relation(&Outlet::HeatFlow(-wanted_w), Limit::None, capacity_w_k);
+                if let Some((q_w, bound_k)) = bounded(&wanted[slot].outlet) {
+                    let (c, f) = relation(&Outlet::HeatFlow(q_w), Limit::None, capacity_w_k);
+                    // Away from the bound, whichever side it is on.
+                    let sign = if q_w > 0.0 { -1.0 } else { 1.0 };
                     next.set(
                         member,
-                        match c + f * t_k {
-                            freely if freely >= coldest_k => Limit::None,
-                            _ if t_k > coldest_k => Limit::Coldest,
+                        match sign * (c + f * t_k - bound_k) {
+                            0.0.. => Limit::None,
+                            _ if sign * (t_k - bound_k) > 0.0 => Limit::Bound,
                             _ => Limit::Passes,
                         },
                     );
@@ -177,6 +192,17 @@ mod tests {
         assert!((of(270.0) - 280.0).abs() < 1e-9);
         assert!((of(290.0) - 290.0).abs() < 1e-9);
         assert!((of(310.0) - 300.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn water_is_not_warmed_above_its_limit_and_hotter_water_passes() {
+        let warmed = |hottest_k| Outlet::Warmed { wanted_w: 8400.0, hottest_k };
+        let of = |hottest_k| {
+            solved(0.1, &[warmed(hottest_k), Outlet::Temperature(300.0)]).unwrap()[0].t_out_k
+        };
+        assert!((of(330.0) - 320.0).abs() < 1e-9);
+        assert!((of(310.0) - 310.0).abs() < 1e-9);
+        assert!((of(290.0) - 300.0).abs() < 1e-9);
     }
 
     #[test]

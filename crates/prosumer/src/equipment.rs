@@ -1,14 +1,24 @@
 //! REGISTRY of the thermal units: adding one is one file, its `mod` line and its line below.
 
 pub mod air_source_heat_pump;
+pub mod battery;
 pub mod booster_heat_pump;
+pub mod brine_heat_pump;
 pub mod building;
+pub mod combustion;
 pub mod cooling_load;
 pub mod direct_exchanger;
+pub mod domestic_hot_water;
+pub mod electric_load;
+pub mod grid_connection;
 pub mod heat_load;
 pub mod heat_source;
+pub mod household;
 pub mod ideal_house;
+pub mod mixing_station;
 pub mod prescribed_source;
+pub mod pv;
+pub mod solar_collector;
 pub mod storage;
 
 use crate::thermal_unit::{ThermalUnit, UnitError};
@@ -23,13 +33,30 @@ anergy_core::registry! {
         AirSourceHeatPump("air_source_heat_pump", air_source_heat_pump::AirSourceHeatPump, air_source_heat_pump::AirSourceHeatPumpParams),
         BoosterHeatPump("booster_heat_pump", booster_heat_pump::BoosterHeatPump, booster_heat_pump::BoosterHeatPumpParams),
         BoosterTransferStation("booster_transfer_station", booster_heat_pump::BoosterHeatPump, booster_heat_pump::BoosterTransferStationParams),
+        BrineHeatPump("brine_heat_pump", brine_heat_pump::BrineHeatPump, brine_heat_pump::BrineHeatPumpParams),
         DirectExchanger("direct_exchanger", direct_exchanger::DirectExchanger, direct_exchanger::DirectExchangerParams),
+        CondensingBoiler("condensing_boiler", combustion::Combustion, combustion::boiler::CondensingBoilerParams),
+        Chp("chp", combustion::Combustion, combustion::chp::ChpParams),
+        StirlingChp("stirling_chp", combustion::Combustion, combustion::stirling::StirlingChpParams),
+        DomesticHotWater("domestic_hot_water", domestic_hot_water::DomesticHotWater, domestic_hot_water::DomesticHotWaterParams),
+        SolarCollector("solar_collector", solar_collector::SolarCollector, solar_collector::SolarCollectorParams),
+        MixingStation("mixing_station", mixing_station::MixingStation, mixing_station::MixingStationParams),
+        Pv("pv", pv::Pv, pv::PvParams),
+        Battery("battery", battery::Battery, battery::BatteryParams),
+        Household("household", household::Household, household::HouseholdParams),
+        ElectricLoad("electric_load", electric_load::ElectricLoad, electric_load::ElectricLoadParams),
+        ElectricVehicle("electric_vehicle", electric_load::ElectricLoad, electric_load::ElectricVehicleParams),
+        GridConnection("grid_connection", grid_connection::GridConnection, grid_connection::GridConnectionParams),
         IdealHouse("ideal_house", ideal_house::IdealHouse, ideal_house::IdealHouseParams),
         CoolingLoad("cooling_load", cooling_load::CoolingLoad, cooling_load::CoolingLoadParams),
         Building("building", building::Building, building::BuildingParams),
         Storage("storage", storage::Storage, storage::StorageParams),
     }
 }
+
+/// The kinds that no water passes.
+pub const WITHOUT_PORTS: &[&str] =
+    &["pv", "battery", "household", "electric_load", "electric_vehicle", "grid_connection"];
 
 /// A temperature at which the water of a unit is liquid, K.
 ///

@@ -92,6 +92,35 @@ pub(crate) fn map_of(
     }
 }
 
+/// The rows of a table over time: the time, and the values of its columns.
+///
+/// # Errors
+/// Names the field of the table that is wrong.
+pub(crate) fn rows_over_time<const N: usize>(
+    times_field: &'static str,
+    times_s: &[f64],
+    columns: [(&'static str, &[f64]); N],
+) -> Result<Vec<(f64, [f64; N])>, UnitError> {
+    for (field, column) in columns {
+        let (points, times) = (column.len(), times_s.len());
+        if points != times {
+            let problem =
+                format!("{field} has {points} points, {times_field} {times}: they must be as many");
+            return Err(inside(field, problem));
+        }
+        if column.iter().any(|value| !value.is_finite()) {
+            return Err(inside(field, format!("{field} must be finite numbers")));
+        }
+    }
+    if times_s.first().is_some_and(|first| *first != 0.0)
+        || times_s.windows(2).any(|pair| pair[1] <= pair[0] || !pair[1].is_finite())
+    {
+        return Err(inside(times_field, format!("{times_field} must rise from 0")));
+    }
+    let row = |(i, time_s): (usize, &f64)| (*time_s, columns.map(|(_, column)| column[i]));
+    Ok(times_s.iter().enumerate().map(row).collect())
+}
+
 /// The table of a start.
 ///
 /// # Errors
@@ -101,31 +130,12 @@ pub(crate) fn start_table(
     heat: &[f64],
     power: &[f64],
 ) -> Result<Vec<StartPoint>, UnitError> {
-    for (field, other) in [("start_heat", heat), ("start_power", power)] {
-        let (points, times) = (other.len(), times_s.len());
-        if points != times {
-            let problem =
-                format!("{field} has {points} points, start_times_s {times}: they must be as many");
-            return Err(inside(field, problem));
-        }
-        if other.iter().any(|value| !value.is_finite()) {
-            return Err(inside(field, format!("{field} must be finite numbers")));
-        }
-    }
-    if times_s.first().is_some_and(|first| *first != 0.0)
-        || times_s.windows(2).any(|pair| pair[1] <= pair[0] || !pair[1].is_finite())
-    {
-        return Err(inside("start_times_s", "start_times_s must rise from 0".into()));
-    }
+    let columns = [("start_heat", heat), ("start_power", power)];
+    let rows = rows_over_time("start_times_s", times_s, columns)?;
     if let Some(value) = power.iter().find(|value| **value < 0.0) {
         let problem = format!("start_power: {value} must not be negative");
         return Err(inside("start_power", problem));
     }
-    let points = times_s.iter().zip(heat).zip(power);
-    let point = |((time_s, heat), power): ((&f64, &f64), &f64)| StartPoint {
-        time_s: *time_s,
-        heat: *heat,
-        power: *power,
-    };
-    Ok(points.map(point).collect())
+    let point = |(time_s, [heat, power]): (f64, [f64; 2])| StartPoint { time_s, heat, power };
+    Ok(rows.into_iter().map(point).collect())
 }

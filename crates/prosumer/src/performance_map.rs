@@ -1,6 +1,7 @@
 //! Performance maps of heat pumps: heat (or cold) and electric power over modulation and temperatures.
 //!
-//! **Equation** one of four forms: the reference unit of 10 kW as a product of polynomials ([`mod@reference`]), a table
+//! **Equation** one of five forms: the reference air-source unit as a product of polynomials ([`mod@reference`]), the reference brine
+//! unit as polynomials ([`brine`]), a table
 //! ([`table`]), the linear fits of the public database hplib ([`hplib`]), a share of Carnot ([`carnot`]).
 //! The heat taken from the source follows in every form from `Q_source = Q - eta_int P` in heating, the heat given
 //! to the sink from `Q_sink = Q_cold + eta_int P` in cooling, never from a second map.
@@ -13,6 +14,7 @@
 //!
 //! **Sources** see each form.
 
+pub mod brine;
 pub mod carnot;
 pub mod hplib;
 pub mod params;
@@ -140,6 +142,8 @@ pub enum PerformanceMap {
     Hplib(hplib::HplibFit),
     /// Share of Carnot.
     Carnot(carnot::CarnotShare),
+    /// The reference brine unit.
+    Brine(brine::BrineFit),
 }
 
 /// Change of a temperature that no longer counts, K.
@@ -156,6 +160,7 @@ impl PerformanceMap {
             Self::Table(map) => map.at(operation),
             Self::Hplib(map) => map.at(operation),
             Self::Carnot(map) => map.at(operation),
+            Self::Brine(map) => map.at(operation),
         }
     }
 
@@ -166,6 +171,7 @@ impl PerformanceMap {
             Self::Table(map) => map.modulation_min(),
             Self::Hplib(map) => map.modulation_min(),
             Self::Carnot(_) => 0.0,
+            Self::Brine(_) => 1.0,
         }
     }
 

@@ -42,6 +42,24 @@ pub struct UnitInput {
     pub follows: Option<&'static str>,
 }
 
+/// Input `follows`: the sum of an output of this name over the other units of the site, in the same step.
+pub const OF_SITE: &str = "site.";
+/// Input `follows`: the electricity that all units of the site and its pumps draw that do not follow it themselves, W.
+pub const SITE_ELECTRICITY: &str = "site.electricity";
+/// Input `follows`: the electricity of all other units of the site and of its pumps, W.
+pub const SITE_GRID: &str = "site.grid";
+/// Input `follows`: the start of the run, s since 1970 (UTC); it stays.
+pub const START_UNIX: &str = "run.start_unix_s";
+
+/// An output that says that something is wrong while it is not 0: an event when it goes up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Flag {
+    /// The output.
+    pub output: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+}
+
 /// A recorded output of a unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitOutput {
@@ -119,6 +137,16 @@ pub trait ThermalUnit {
         out: &mut [f64],
     ) -> Exchange;
 
+    /// Outputs that are worth an event.
+    fn flags(&self) -> &'static [Flag] {
+        &[]
+    }
+
+    /// What a user should know of how it was parametrised: warnings at the start of a run.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Heat that it holds, J above 0 degC.
     fn stored_j(&self, _state: &[f64]) -> f64 {
         0.0
@@ -178,6 +206,21 @@ impl UnitError {
             Self::Fields { .. } => None,
         }
     }
+}
+
+/// A unit may be this much larger than the one whose data it has.
+const LARGEST_SCALE: f64 = 3.0;
+
+/// The remark on a unit that was scaled further than its data carry.
+pub(crate) fn scaled_far(factor: f64) -> Vec<String> {
+    let far = factor > LARGEST_SCALE || factor < 1.0 / LARGEST_SCALE;
+    let remark = || {
+        format!(
+            "its size is {factor:.3} times that of the unit whose data it has: efficiency, start and stop \
+             may differ"
+        )
+    };
+    far.then(remark).into_iter().collect()
 }
 
 /// Heat per kelvin that a flow carries, W/K.

@@ -11,6 +11,7 @@ mod pressure;
 mod pulses;
 mod regulators;
 mod signals;
+mod site_inputs;
 mod stations;
 mod units;
 mod weather;
@@ -254,6 +255,8 @@ impl Builder<'_> {
             start_unix_ns: start_unix_ns(model),
             origin_rad: model.origin_rad,
             seeds: model.seeds(),
+            site_inputs: Vec::new(),
+            flags: Vec::new(),
             step: steps.0.shortest(),
             stepping: steps.0,
             automatic: AutomaticStep::of(&self.model.run),
@@ -277,6 +280,7 @@ impl Builder<'_> {
         (plan.channels, plan.sources) = (Vec::new(), Vec::new());
         plan.follows.extend(self.weather_ground(&plan, &writers));
         plan.follows.extend(self.follows(&plan.units, &plan.signals, &writers));
+        site_inputs::find(&mut plan, &writers);
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
@@ -316,6 +320,7 @@ impl Builder<'_> {
                 units.last().map_or(0, |unit| unit.slots.end)
             ],
             unit_exchange: vec![Exchange::default(); units.len()],
+            unit_flags: Vec::new(),
             stations: vec![StationState::default(); stations.len()],
             blocked_spans: Vec::new(),
             station_heat_j: vec![0.0; stations.len()],

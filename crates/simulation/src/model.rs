@@ -268,7 +268,19 @@ impl Model {
         let weather = weather.filter(|entry| entry.kind == WeatherKind::Synthetic);
         let noisy = self.sensors.iter().map(|sensor| &sensor.entry).filter(|s| s.noise > 0.0);
         let weather = weather.map(|entry| ("weather".to_owned(), entry.seed));
-        weather.chain(noisy.map(|sensor| (sensor.id.to_string(), sensor.seed))).collect()
+        let units = self.units.iter().filter_map(|unit| {
+            let seed = match &unit.params {
+                EquipmentParams::Household(params) => params.seed,
+                EquipmentParams::ElectricVehicle(params) => params.seed,
+                EquipmentParams::DomesticHotWater(params) => {
+                    params.daily_m3.map(|_| params.seed)?
+                }
+                _ => return None,
+            };
+            Some((unit.id.to_string(), seed))
+        });
+        let noisy = noisy.map(|sensor| (sensor.id.to_string(), sensor.seed));
+        weather.chain(noisy).chain(units).collect()
     }
 
     /// The edge with a name.

@@ -21,7 +21,9 @@ use anergy_network::holding::Vessel;
 use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 pub(crate) use control::{PlannedController, PlannedSensor, SwingWatch};
-pub(crate) use houses::{GridPort, PlannedCircuit, PlannedDrive, PlannedUnit};
+pub(crate) use houses::{
+    GridPort, OfSite, PlannedCircuit, PlannedDrive, PlannedUnit, SiteInput, UnitFlag,
+};
 use smol_str::SmolStr;
 use std::sync::{Arc, OnceLock};
 
@@ -249,6 +251,10 @@ pub struct Plan {
     pub(crate) origin_rad: Option<[f64; 2]>,
     /// Starts of random numbers.
     pub(crate) seeds: Vec<(String, u64)>,
+    /// Inputs of units that follow their site.
+    pub(crate) site_inputs: Vec<SiteInput>,
+    /// Outputs of units that are watched: an event when they rise from 0.
+    pub(crate) flags: Vec<UnitFlag>,
     /// Largest fixed step, or shortest automatic one.
     pub(crate) step: Time,
     pub(crate) stepping: Step,

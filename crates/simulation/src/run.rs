@@ -55,6 +55,9 @@ pub fn run(
         }
         Ok::<(), RunError>(())
     };
+    for event in simulation.unit_remarks() {
+        recorder.event(&event)?;
+    }
     for event in simulation.coarse_steps(step.longest()) {
         recorder.event(&event)?;
     }

@@ -10,6 +10,7 @@ mod pipes;
 mod pressure;
 mod pulses;
 mod saturation;
+mod site;
 mod stations;
 mod stepping;
 mod users;
@@ -157,6 +158,7 @@ impl Simulation {
             .map_err(|source| RunError::Singular { time: now.to_string(), source })?;
         self.state.network.advance_soil(&self.plan.network.soil, dt_s);
         self.advance_units(dt_s)?;
+        self.watch_flags(end);
         self.watch_stations(end, dt_s);
         self.remember_directions(dt_s);
         self.watch_targets(end, dt_s);

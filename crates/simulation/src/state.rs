@@ -49,6 +49,8 @@ pub struct State {
     pub(crate) unit_ports: Vec<PortFlow>,
     /// Electricity and other heat of each unit in the last step.
     pub(crate) unit_exchange: Vec<Exchange>,
+    /// Whether each watched output of a unit was up at the end of the last step.
+    pub(crate) unit_flags: Vec<bool>,
     pub(crate) stations: Vec<StationState>,
     /// When their flags were up, in the order in which they went up.
     pub(crate) blocked_spans: Vec<BlockedSpan>,
@@ -113,6 +115,7 @@ impl State {
             + heap(&self.unit_outputs)
             + heap(&self.unit_ports)
             + heap(&self.unit_exchange)
+            + heap(&self.unit_flags)
             + heap(&self.stations)
             + heap(&self.station_heat_j)
             + heap(&self.meters)

@@ -41,7 +41,7 @@ impl Transport {
                     Outlet::Linear { constant_k, of_inlet } => {
                         Relation { constant_k, of_inlet, ..Relation::PASS }
                     }
-                    Outlet::HeatFlow(q_w) => {
+                    Outlet::HeatFlow(q_w) | Outlet::Warmed { wanted_w: q_w, .. } => {
                         Relation { constant_k: q_w / (m.abs() * cp), ..Relation::PASS }
                     }
                     Outlet::Cooled { wanted_w, coldest_k } => {
@@ -128,6 +128,9 @@ impl Transport {
                 constant_k + of_inlet * t_k
             }
             Outlet::HeatFlow(q_w) => t_k + rise_k(q_w),
+            Outlet::Warmed { wanted_w, hottest_k } => {
+                (t_k + rise_k(wanted_w)).min(hottest_k.max(t_k))
+            }
             Outlet::Cooled { wanted_w, coldest_k } => {
                 (t_k + rise_k(-wanted_w)).max(coldest_k.min(t_k))
             }

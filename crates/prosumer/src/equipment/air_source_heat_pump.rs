@@ -81,7 +81,7 @@ const CONTENT_J: usize = STEP_S + 4;
 const HEAT_J: usize = STEP_S + 5;
 const COLD_J: usize = STEP_S + 6;
 const ELECTRIC_J: usize = STEP_S + 7;
-const STATE_LEN: usize = STEP_S + 8;
+pub(super) const STATE_LEN: usize = STEP_S + 8;
 
 const MODULATION: usize = 0;
 const MODE: usize = 1;
@@ -152,6 +152,11 @@ impl AirSourceHeatPump {
         };
         let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
         Plan { means, next, tripped, m_flow_kg_s, aux_w: aux_w * means.flow_on }
+    }
+
+    /// The same unit with another source and map, that only heats.
+    pub(super) fn with_map(self, heating: PerformanceMap) -> Self {
+        Self { heating, cooling: None, ..self }
     }
 
     /// Mean share of the content at the begin of a step in what leaves during it.
@@ -312,6 +317,10 @@ impl ThermalUnit for AirSourceHeatPump {
         ];
         out.copy_from_slice(&values);
         Exchange { electric_w, external_w: inside_w - electric_w }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        crate::thermal_unit::scaled_far(self.size)
     }
 
     fn stored_j(&self, state: &[f64]) -> f64 {

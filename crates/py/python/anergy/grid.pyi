@@ -3324,6 +3324,182 @@ class _Unit:
             false: the steady map at once, without start, speed limit, pump overrun and least times. Default:
             True.
         """
+    def brine_heat_pump(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        modulation: float | None = None,
+        aux_modulation: float | None = None,
+        enable: float | None = None,
+        map: str | _Map | None = None,
+        heat_nominal_w: float | None = None,
+        heat_nominal_kw: float | None = None,
+        heat_nominal_mw: float | None = None,
+        cop_nominal: float | None = None,
+        source: Literal["boreholes", "pipes", "given"] | None = None,
+        ground_k: float | None = None,
+        ground_degc: float | None = None,
+        length_m: float | None = None,
+        length_mm: float | None = None,
+        length_cm: float | None = None,
+        length_km: float | None = None,
+        radius_m: float | None = None,
+        radius_mm: float | None = None,
+        radius_cm: float | None = None,
+        radius_km: float | None = None,
+        wall_resistance_k_m_w: float | None = None,
+        spacing_m: float | None = None,
+        spacing_mm: float | None = None,
+        spacing_cm: float | None = None,
+        spacing_km: float | None = None,
+        depth_m: float | None = None,
+        depth_mm: float | None = None,
+        depth_cm: float | None = None,
+        depth_km: float | None = None,
+        conductivity_w_m_k: float | None = None,
+        capacity_j_m3_k: float | None = None,
+        capacity_j_m3_degc: float | None = None,
+        brine_difference_k: float | None = None,
+        source_min_k: float | None = None,
+        source_min_degc: float | None = None,
+        flow_control: Literal["constant_temperature_difference", "constant_flow"] | None = None,
+        temperature_difference_k: float | None = None,
+        v_flow_m3_s: float | None = None,
+        v_flow_l_s: float | None = None,
+        v_flow_l_min: float | None = None,
+        v_flow_l_h: float | None = None,
+        v_flow_m3_h: float | None = None,
+        return_min_k: float | None = None,
+        return_min_degc: float | None = None,
+        return_max_k: float | None = None,
+        return_max_degc: float | None = None,
+        restart_difference_k: float | None = None,
+        supply_max_k: float | None = None,
+        supply_max_degc: float | None = None,
+        run_min_s: float | None = None,
+        run_min_min: float | None = None,
+        run_min_h: float | None = None,
+        run_min_d: float | None = None,
+        off_min_s: float | None = None,
+        off_min_min: float | None = None,
+        off_min_h: float | None = None,
+        off_min_d: float | None = None,
+        start_s: float | None = None,
+        start_min: float | None = None,
+        start_h: float | None = None,
+        start_d: float | None = None,
+        pump_overrun_s: float | None = None,
+        pump_overrun_min: float | None = None,
+        pump_overrun_h: float | None = None,
+        pump_overrun_d: float | None = None,
+        aux_rated_w: float | None = None,
+        aux_rated_kw: float | None = None,
+        aux_rated_mw: float | None = None,
+        aux_steps: int | None = None,
+        idle_w: float | None = None,
+        idle_kw: float | None = None,
+        idle_mw: float | None = None,
+        heat_share: float | None = None,
+        dynamics: bool | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "brine_heat_pump".
+
+        A brine heat pump as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        modulation
+            Above 0 the unit runs, while nothing drives it. Default: 0.0.
+        aux_modulation
+            Wanted power of the electric heater as a share of its rated one while nothing drives it. Default:
+            0.0.
+        enable
+            1 releases the unit, 0 keeps it off, while nothing drives it. Default: 1.0.
+        map
+            Map of heating; the reference unit where none is given.
+        heat_nominal_w
+            Heat of the reference unit at brine of 0 and water of 35 degC, W: its size. Default: 10800.0. Also
+            heat_nominal_kw, heat_nominal_mw.
+        cop_nominal
+            COP of the reference unit there. Default: 4.7.
+        source
+            What it takes its heat from. One of boreholes, pipes, given. Default: boreholes.
+        ground_k
+            Undisturbed ground, or the brine itself, while nothing drives it, K; with `pipes` and `given` it
+            follows the ground of the weather. Default: 283.15. Also ground_degc.
+        length_m
+            Length of all boreholes or pipes, m. Default: 200.0. Also length_mm, length_cm, length_km.
+        radius_m
+            Radius of a borehole, or of a pipe, m; 0.075 and 0.016 where it is not given. Also radius_mm,
+            radius_cm, radius_km.
+        wall_resistance_k_m_w
+            Resistance from the brine to the wall of the hole or pipe, K m/W. Default: 0.1.
+        spacing_m
+            Distance between pipes, m. Default: 0.6. Also spacing_mm, spacing_cm, spacing_km.
+        depth_m
+            Depth of pipes, m. Default: 1.5. Also depth_mm, depth_cm, depth_km.
+        conductivity_w_m_k
+            Conductivity of the ground, W/(m K). Default: 2.0.
+        capacity_j_m3_k
+            Heat capacity of the ground, J/(m3 K). Default: 2200000.0. Also capacity_j_m3_degc.
+        brine_difference_k
+            By how much the ground warms the brine, K. Default: 5.0.
+        source_min_k
+            The unit stops where the brine arrives colder, K. Default: 268.15. Also source_min_degc.
+        flow_control
+            How the flow of the water is set. One of constant_temperature_difference, constant_flow. Default:
+            constant_temperature_difference.
+        temperature_difference_k
+            Difference of supply and return with `constant_temperature_difference`, K. Default: 5.0.
+        v_flow_m3_s
+            Flow with `constant_flow`, m3/s. Default: 0.0005. Also v_flow_l_s, v_flow_l_min, v_flow_l_h,
+            v_flow_m3_h.
+        return_min_k
+            The unit stops where the water arrives colder, K. Default: 293.15. Also return_min_degc.
+        return_max_k
+            The unit stops where the water arrives warmer, K. Default: 341.15. Also return_max_degc.
+        restart_difference_k
+            How far inside its limits the temperature must be to start again, K. Default: 2.0.
+        supply_max_k
+            High-pressure cut-out: water that leaves the condenser warmer stops the unit, K. Default: 343.15.
+            Also supply_max_degc.
+        run_min_s
+            Smallest time of a run, s. Default: 300.0. Also run_min_min, run_min_h, run_min_d.
+        off_min_s
+            Smallest time between a stop and the next start, s. Default: 300.0. Also off_min_min, off_min_h,
+            off_min_d.
+        start_s
+            Length of a start, s. Default: 300.0. Also start_min, start_h, start_d.
+        pump_overrun_s
+            How long the pump runs after the command to stop, s. Default: 80.0. Also pump_overrun_min,
+            pump_overrun_h, pump_overrun_d.
+        aux_rated_w
+            Rated power of the electric heater behind the condenser, W; 0 for none. Default: 6000.0. Also
+            aux_rated_kw, aux_rated_mw.
+        aux_steps
+            Steps of the electric heater; 0 for any power. Default: 3.
+        idle_w
+            Electricity while the unit is off, W. Default: 15.0. Also idle_kw, idle_mw.
+        heat_share
+            Share of the electricity of the compressor that becomes heat of the refrigerant; the rest warms the
+            room. Default: 0.95.
+        dynamics
+            false: the steady map at once, without start, pump overrun, least times and content. Default: True.
+        """
     def direct_exchanger(
         self,
         site: str | None = None,
@@ -3412,6 +3588,1050 @@ class _Unit:
         reversed_for_cold
             Whether the grid water flows from the cold to the hot line while the house is cooled. Default:
             True.
+        """
+    def condensing_boiler(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        modulation: float | None = None,
+        enable: float | None = None,
+        supply_set_k: float | None = None,
+        supply_set_degc: float | None = None,
+        nominal_w: float | None = None,
+        nominal_kw: float | None = None,
+        nominal_mw: float | None = None,
+        modulation_min: float | None = None,
+        load_change_s: float | None = None,
+        load_change_min: float | None = None,
+        load_change_h: float | None = None,
+        load_change_d: float | None = None,
+        command: Literal["power", "supply_temperature"] | None = None,
+        flow_control: Literal["constant_temperature_difference", "measured_temperature_difference", "constant_flow", "constant_supply"] | None = None,
+        temperature_difference_k: float | None = None,
+        v_flow_m3_s: float | None = None,
+        v_flow_l_s: float | None = None,
+        v_flow_l_min: float | None = None,
+        v_flow_l_h: float | None = None,
+        v_flow_m3_h: float | None = None,
+        v_flow_max_m3_s: float | None = None,
+        v_flow_max_l_s: float | None = None,
+        v_flow_max_l_min: float | None = None,
+        v_flow_max_l_h: float | None = None,
+        v_flow_max_m3_h: float | None = None,
+        table_return_k: Sequence[float] | None = None,
+        table_return_degc: Sequence[float] | None = None,
+        table_efficiency: Sequence[float] | None = None,
+        table_heat_min_w: Sequence[float] | None = None,
+        table_heat_min_kw: Sequence[float] | None = None,
+        table_heat_min_mw: Sequence[float] | None = None,
+        table_heat_max_w: Sequence[float] | None = None,
+        table_heat_max_kw: Sequence[float] | None = None,
+        table_heat_max_mw: Sequence[float] | None = None,
+        return_max_k: float | None = None,
+        return_max_degc: float | None = None,
+        supply_max_k: float | None = None,
+        supply_max_degc: float | None = None,
+        restart_difference_k: float | None = None,
+        run_min_s: float | None = None,
+        run_min_min: float | None = None,
+        run_min_h: float | None = None,
+        run_min_d: float | None = None,
+        off_min_s: float | None = None,
+        off_min_min: float | None = None,
+        off_min_h: float | None = None,
+        off_min_d: float | None = None,
+        start_times_s: Sequence[float] | None = None,
+        start_times_min: Sequence[float] | None = None,
+        start_times_h: Sequence[float] | None = None,
+        start_times_d: Sequence[float] | None = None,
+        start_heat: Sequence[float] | None = None,
+        start_flow: Sequence[float] | None = None,
+        stop_times_s: Sequence[float] | None = None,
+        stop_times_min: Sequence[float] | None = None,
+        stop_times_h: Sequence[float] | None = None,
+        stop_times_d: Sequence[float] | None = None,
+        stop_heat: Sequence[float] | None = None,
+        idle_w: float | None = None,
+        idle_kw: float | None = None,
+        idle_mw: float | None = None,
+        dynamics: bool | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "condensing_boiler".
+
+        A condensing gas boiler as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        modulation
+            Wanted load as a share of the full one while nothing drives it; 0 is off. Default: 0.0.
+        enable
+            1 releases the unit, 0 keeps it off, while nothing drives it. Default: 1.0.
+        supply_set_k
+            Set supply temperature while nothing drives it, K: with `constant_supply`, or `command =
+            "supply_temperature"`. Default: 333.15. Also supply_set_degc.
+        nominal_w
+            Nominal heat, W: 14, 20 or 50 kW are those of the series; the map of 14 kW is scaled. Default:
+            14000.0. Also nominal_kw, nominal_mw.
+        modulation_min
+            Smallest load as a share of the full one. Default: 0.2.
+        load_change_s
+            Time in which the load would change from nothing to full, s; 0 at once. Default: 0.0. Also
+            load_change_min, load_change_h, load_change_d.
+        command
+            What the command is. One of power, supply_temperature. Default: power.
+        flow_control
+            How the flow of the water is set. One of constant_temperature_difference,
+            measured_temperature_difference, constant_flow, constant_supply. Default:
+            constant_temperature_difference.
+        temperature_difference_k
+            Difference of supply and return with a constant or measured temperature difference, K. Default:
+            20.0.
+        v_flow_m3_s
+            Flow with `constant_flow`, m3/s. Default: 0.0003333333333333333. Also v_flow_l_s, v_flow_l_min,
+            v_flow_l_h, v_flow_m3_h.
+        v_flow_max_m3_s
+            Largest flow with `constant_supply`, m3/s. Default: 0.0006666666666666666. Also v_flow_max_l_s,
+            v_flow_max_l_min, v_flow_max_l_h, v_flow_max_m3_h.
+        table_return_k
+            Another map: return temperatures, K, rising. Also table_return_degc.
+        table_efficiency
+            Another map: efficiency by the lower heating value at these temperatures.
+        table_heat_min_w
+            Another map: heat at the smallest load at these temperatures, W. Also table_heat_min_kw,
+            table_heat_min_mw.
+        table_heat_max_w
+            Another map: heat at full load at these temperatures, W. Also table_heat_max_kw, table_heat_max_mw.
+        return_max_k
+            The unit stops where the water arrives warmer, K. Default: 348.15. Also return_max_degc.
+        supply_max_k
+            The unit stops where the water leaves warmer, K. Default: 356.15. Also supply_max_degc.
+        restart_difference_k
+            How far below its limits the water must be to start again, K. Default: 5.0.
+        run_min_s
+            Smallest time of a run, s. Default: 0.0. Also run_min_min, run_min_h, run_min_d.
+        off_min_s
+            Smallest time between a stop and the next start, s. Default: 0.0. Also off_min_min, off_min_h,
+            off_min_d.
+        start_times_s
+            Start: times of its table, s, rising from 0. Default: [0.0, 9.0, 21.0, 33.0, 45.0, 57.0, 69.0,
+            93.0, 117.0, 141.0, 165.0, 189.0, 213.0, 237.0, 273.0, 300.0]. Also start_times_min, start_times_h,
+            start_times_d.
+        start_heat
+            Start: heat at these times as a share of the steady one. Default: [0.0, 0.16, 0.49, 0.51, 0.4,
+            0.42, 0.54, 0.74, 0.93, 1.07, 1.26, 1.16, 1.11, 1.05, 1.0, 1.0].
+        start_flow
+            Start: flow at these times as a share of the steady one. Default: [0.0, 0.72, 0.7, 0.67, 0.65,
+            0.63, 0.67, 0.79, 0.92, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0].
+        stop_times_s
+            Stop: times of its table, s, rising from 0. Default: [0.0, 2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0,
+            30.0, 70.0]. Also stop_times_min, stop_times_h, stop_times_d.
+        stop_heat
+            Stop: heat at these times as a share of that before; the flow goes on until the last one. Default:
+            [1.0, 1.0, 0.97, 0.79, 0.47, 0.34, 0.17, 0.1, 0.05, 0.0].
+        idle_w
+            Electricity of control, fan and pump, W. Default: 35.0. Also idle_kw, idle_mw.
+        dynamics
+            false: the steady map at once, without start, stop, load changes and least times. Default: True.
+        """
+    def chp(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        modulation: float | None = None,
+        enable: float | None = None,
+        supply_set_k: float | None = None,
+        supply_set_degc: float | None = None,
+        size: Literal["2kw", "5kw", "18kw"] | None = None,
+        electric_max_w: float | None = None,
+        electric_max_kw: float | None = None,
+        electric_max_mw: float | None = None,
+        modulation_min: float | None = None,
+        electric_efficiency: float | None = None,
+        electric_efficiency_min: float | None = None,
+        total_efficiency: float | None = None,
+        load_change_s: float | None = None,
+        load_change_min: float | None = None,
+        load_change_h: float | None = None,
+        load_change_d: float | None = None,
+        flow_control: Literal["constant_temperature_difference", "measured_temperature_difference", "constant_flow", "constant_supply"] | None = None,
+        temperature_difference_k: float | None = None,
+        v_flow_m3_s: float | None = None,
+        v_flow_l_s: float | None = None,
+        v_flow_l_min: float | None = None,
+        v_flow_l_h: float | None = None,
+        v_flow_m3_h: float | None = None,
+        v_flow_max_m3_s: float | None = None,
+        v_flow_max_l_s: float | None = None,
+        v_flow_max_l_min: float | None = None,
+        v_flow_max_l_h: float | None = None,
+        v_flow_max_m3_h: float | None = None,
+        return_max_k: float | None = None,
+        return_max_degc: float | None = None,
+        supply_max_k: float | None = None,
+        supply_max_degc: float | None = None,
+        restart_difference_k: float | None = None,
+        run_min_s: float | None = None,
+        run_min_min: float | None = None,
+        run_min_h: float | None = None,
+        run_min_d: float | None = None,
+        off_min_s: float | None = None,
+        off_min_min: float | None = None,
+        off_min_h: float | None = None,
+        off_min_d: float | None = None,
+        start_s: float | None = None,
+        start_min: float | None = None,
+        start_h: float | None = None,
+        start_d: float | None = None,
+        warm_start_s: float | None = None,
+        warm_start_min: float | None = None,
+        warm_start_h: float | None = None,
+        warm_start_d: float | None = None,
+        cold_after_s: float | None = None,
+        cold_after_min: float | None = None,
+        cold_after_h: float | None = None,
+        cold_after_d: float | None = None,
+        warm_up_w: float | None = None,
+        warm_up_kw: float | None = None,
+        warm_up_mw: float | None = None,
+        warm_up_s: float | None = None,
+        warm_up_min: float | None = None,
+        warm_up_h: float | None = None,
+        warm_up_d: float | None = None,
+        idle_w: float | None = None,
+        idle_kw: float | None = None,
+        idle_mw: float | None = None,
+        dynamics: bool | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "chp".
+
+        A gas engine with heat and power as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        modulation
+            Wanted electricity as a share of the largest while nothing drives it; 0 is off. Default: 0.0.
+        enable
+            1 releases the unit, 0 keeps it off, while nothing drives it. Default: 1.0.
+        supply_set_k
+            Set supply temperature with `constant_supply` while nothing drives it, K. Default: 353.15. Also
+            supply_set_degc.
+        size
+            Size: gives what is not stated below. One of 2kw, 5kw, 18kw. Default: 2kw.
+        electric_max_w
+            Electricity at full load, W. Also electric_max_kw, electric_max_mw.
+        modulation_min
+            Smallest load as a share of the full one.
+        electric_efficiency
+            Electric efficiency at full load.
+        electric_efficiency_min
+            Electric efficiency at the smallest load; three quarters of that at full load without it.
+        total_efficiency
+            Efficiency of heat and electricity at full load and a return of 35 degC.
+        load_change_s
+            Time in which the load would change from nothing to full, s; 0 at once. Default: 40.0. Also
+            load_change_min, load_change_h, load_change_d.
+        flow_control
+            How the flow of the water is set. One of constant_temperature_difference,
+            measured_temperature_difference, constant_flow, constant_supply. Default: constant_supply.
+        temperature_difference_k
+            Difference of supply and return with a constant temperature difference, K. Default: 20.0.
+        v_flow_m3_s
+            Flow with `constant_flow`, m3/s. Default: 6.666666666666667e-05. Also v_flow_l_s, v_flow_l_min,
+            v_flow_l_h, v_flow_m3_h.
+        v_flow_max_m3_s
+            Largest flow with `constant_supply`, m3/s. Default: 0.0006666666666666666. Also v_flow_max_l_s,
+            v_flow_max_l_min, v_flow_max_l_h, v_flow_max_m3_h.
+        return_max_k
+            The unit stops where the water arrives warmer, K. Default: 348.15. Also return_max_degc.
+        supply_max_k
+            The unit stops where the water leaves warmer, K. Default: 366.15. Also supply_max_degc.
+        restart_difference_k
+            How far below its limits the water must be to start again, K. Default: 5.0.
+        run_min_s
+            Smallest time of a run, s. Default: 0.0. Also run_min_min, run_min_h, run_min_d.
+        off_min_s
+            Smallest time between a stop and the next start, s. Default: 0.0. Also off_min_min, off_min_h,
+            off_min_d.
+        start_s
+            Length of a start of the cold engine, s; no heat in its first 88 %. Default: 825.0. Also start_min,
+            start_h, start_d.
+        warm_start_s
+            Length of a start of the warm engine, s. Default: 200.0. Also warm_start_min, warm_start_h,
+            warm_start_d.
+        cold_after_s
+            Standstill after which the engine is cold, s. Default: 36000.0. Also cold_after_min, cold_after_h,
+            cold_after_d.
+        warm_up_w
+            Heat that the cold engine takes for itself when it starts, W per 1.9 kW of electricity; it ends in
+            `warm_up_s`. Default: 1000.0. Also warm_up_kw, warm_up_mw.
+        warm_up_s
+            Time in which the engine warms up, s. Default: 2400.0. Also warm_up_min, warm_up_h, warm_up_d.
+        idle_w
+            Electricity while the unit is off, W. Default: 35.0. Also idle_kw, idle_mw.
+        dynamics
+            false: the steady map at once, without start, warm-up, stop, load changes and least times. Default:
+            True.
+        """
+    def stirling_chp(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        modulation: float | None = None,
+        aux_modulation: float | None = None,
+        rod_modulation: float | None = None,
+        enable: float | None = None,
+        supply_set_k: float | None = None,
+        supply_set_degc: float | None = None,
+        electric_max_w: float | None = None,
+        electric_max_kw: float | None = None,
+        electric_max_mw: float | None = None,
+        electric_efficiency: float | None = None,
+        total_efficiency: float | None = None,
+        aux_nominal_w: float | None = None,
+        aux_nominal_kw: float | None = None,
+        aux_nominal_mw: float | None = None,
+        rod_rated_w: float | None = None,
+        rod_rated_kw: float | None = None,
+        rod_rated_mw: float | None = None,
+        flow_control: Literal["constant_temperature_difference", "measured_temperature_difference", "constant_flow", "constant_supply"] | None = None,
+        temperature_difference_k: float | None = None,
+        v_flow_m3_s: float | None = None,
+        v_flow_l_s: float | None = None,
+        v_flow_l_min: float | None = None,
+        v_flow_l_h: float | None = None,
+        v_flow_m3_h: float | None = None,
+        v_flow_max_m3_s: float | None = None,
+        v_flow_max_l_s: float | None = None,
+        v_flow_max_l_min: float | None = None,
+        v_flow_max_l_h: float | None = None,
+        v_flow_max_m3_h: float | None = None,
+        return_max_k: float | None = None,
+        return_max_degc: float | None = None,
+        supply_max_k: float | None = None,
+        supply_max_degc: float | None = None,
+        restart_difference_k: float | None = None,
+        run_min_s: float | None = None,
+        run_min_min: float | None = None,
+        run_min_h: float | None = None,
+        run_min_d: float | None = None,
+        off_min_s: float | None = None,
+        off_min_min: float | None = None,
+        off_min_h: float | None = None,
+        off_min_d: float | None = None,
+        idle_w: float | None = None,
+        idle_kw: float | None = None,
+        idle_mw: float | None = None,
+        dynamics: bool | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "stirling_chp".
+
+        A Stirling engine with an auxiliary boiler and an electric rod, in one unit with one circuit.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        modulation
+            Above 0 the engine runs, at full load, while nothing drives it. Default: 0.0.
+        aux_modulation
+            Wanted load of the auxiliary boiler while nothing drives it; 0 is off. Default: 0.0.
+        rod_modulation
+            Wanted power of the rod as a share of its rated one while nothing drives it. Default: 0.0.
+        enable
+            1 releases the unit, 0 keeps it off, while nothing drives it. Default: 1.0.
+        supply_set_k
+            Set supply temperature with `constant_supply` while nothing drives it, K. Default: 333.15. Also
+            supply_set_degc.
+        electric_max_w
+            Electricity of the engine, W. Default: 1000.0. Also electric_max_kw, electric_max_mw.
+        electric_efficiency
+            Electric efficiency of the engine. Default: 0.13.
+        total_efficiency
+            Efficiency of its heat and electricity at a return of 30 degC; 0.2 % less per kelvin above.
+            Default: 0.93.
+        aux_nominal_w
+            Nominal heat of the auxiliary boiler, W: that of a `condensing_boiler`. Default: 20000.0. Also
+            aux_nominal_kw, aux_nominal_mw.
+        rod_rated_w
+            Rated power of the rod, W; 0 for none. Default: 6000.0. Also rod_rated_kw, rod_rated_mw.
+        flow_control
+            How the flow of the water is set. One of constant_temperature_difference,
+            measured_temperature_difference, constant_flow, constant_supply. Default:
+            constant_temperature_difference.
+        temperature_difference_k
+            Difference of supply and return with a constant temperature difference, K. Default: 20.0.
+        v_flow_m3_s
+            Flow with `constant_flow`, m3/s. Default: 0.00016666666666666666. Also v_flow_l_s, v_flow_l_min,
+            v_flow_l_h, v_flow_m3_h.
+        v_flow_max_m3_s
+            Largest flow with `constant_supply`, m3/s. Default: 0.0006666666666666666. Also v_flow_max_l_s,
+            v_flow_max_l_min, v_flow_max_l_h, v_flow_max_m3_h.
+        return_max_k
+            The unit stops where the water arrives warmer, K. Default: 348.15. Also return_max_degc.
+        supply_max_k
+            The unit stops where the water leaves warmer, K. Default: 366.15. Also supply_max_degc.
+        restart_difference_k
+            How far below its limits the water must be to start again, K. Default: 5.0.
+        run_min_s
+            Smallest time of a run of the engine, s. Default: 0.0. Also run_min_min, run_min_h, run_min_d.
+        off_min_s
+            Smallest time between a stop and the next start of the engine, s. Default: 0.0. Also off_min_min,
+            off_min_h, off_min_d.
+        idle_w
+            Electricity while the unit is off, W. Default: 35.0. Also idle_kw, idle_mw.
+        dynamics
+            false: the steady maps at once, without start, stop and least times. Default: True.
+        """
+    def domestic_hot_water(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        heated_by: Literal["exchanger", "passing"] | None = None,
+        daily_m3: float | None = None,
+        daily_l: float | None = None,
+        seed: int | None = None,
+        weekend_factor: float | None = None,
+        season_amplitude: float | None = None,
+        utc_offset_s: float | None = None,
+        utc_offset_min: float | None = None,
+        utc_offset_h: float | None = None,
+        utc_offset_d: float | None = None,
+        tap_set_k: float | None = None,
+        tap_set_degc: float | None = None,
+        tolerance_difference_k: float | None = None,
+        cold_k: float | None = None,
+        cold_degc: float | None = None,
+        cold_amplitude_difference_k: float | None = None,
+        missing: Literal["logged", "postponed"] | None = None,
+        ua_w_k: float | None = None,
+        ua_kw_k: float | None = None,
+        v_flow_max_m3_s: float | None = None,
+        v_flow_max_l_s: float | None = None,
+        v_flow_max_l_min: float | None = None,
+        v_flow_max_l_h: float | None = None,
+        v_flow_max_m3_h: float | None = None,
+        pump_w: float | None = None,
+        pump_kw: float | None = None,
+        pump_mw: float | None = None,
+        circulation: float | None = None,
+        circulation_loss_w: float | None = None,
+        circulation_loss_kw: float | None = None,
+        circulation_loss_mw: float | None = None,
+        circulation_pump_w: float | None = None,
+        circulation_pump_kw: float | None = None,
+        circulation_pump_mw: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "domestic_hot_water".
+
+        Hot water of a house as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        heated_by
+            What heats the water of the taps. One of exchanger, passing. Default: exchanger.
+        daily_m3
+            Mean volume of a day at the set temperature, m3; without it the signal `v_flow_m3_s` drives the
+            draws. Also daily_l.
+        seed
+            Number that chooses the sequence of draws. Default: 1.
+        weekend_factor
+            Volume of a day at the weekend over that of a workday. Default: 1.2.
+        season_amplitude
+            How much more is drawn in February than on average, relative. Default: 0.1.
+        utc_offset_s
+            Local clock over UTC, s. Default: 3600.0. Also utc_offset_min, utc_offset_h, utc_offset_d.
+        tap_set_k
+            Set temperature of the taps while nothing drives it, K. Default: 318.15. Also tap_set_degc.
+        tolerance_difference_k
+            A tap may be colder by this without discomfort, K. Default: 1.0.
+        cold_k
+            Mean temperature of the cold water over the year, K. Default: 283.15. Also cold_degc.
+        cold_amplitude_difference_k
+            How much warmer the cold water is in August than on average, K. Default: 3.0.
+        missing
+            What becomes of heat that is missing. One of logged, postponed. Default: logged.
+        ua_w_k
+            Conductance of the exchanger, W/K. Default: 6000.0. Also ua_kw_k.
+        v_flow_max_m3_s
+            Largest flow of the pump on the side of the storage, m3/s. Default: 0.0006666666666666666. Also
+            v_flow_max_l_s, v_flow_max_l_min, v_flow_max_l_h, v_flow_max_m3_h.
+        pump_w
+            Electricity of that pump while water is drawn, W. Default: 40.0. Also pump_kw, pump_mw.
+        circulation
+            1: the circulation runs, while nothing drives it. Default: 1.0.
+        circulation_loss_w
+            Heat that the pipes of the circulation lose, W; 0 without circulation. Default: 0.0. Also
+            circulation_loss_kw, circulation_loss_mw.
+        circulation_pump_w
+            Electricity of the pump of the circulation, W. Default: 10.0. Also circulation_pump_kw,
+            circulation_pump_mw.
+        """
+    def solar_collector(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        collector: Literal["flat_plate", "cpc"] | None = None,
+        area_m2: float | None = None,
+        area_cm2: float | None = None,
+        eta0: float | None = None,
+        a1_w_m2_k: float | None = None,
+        a2: float | None = None,
+        b0: float | None = None,
+        k_diffuse: float | None = None,
+        capacity_j_m2_k: float | None = None,
+        capacity_j_m2_degc: float | None = None,
+        tilt_rad: float | None = None,
+        tilt_deg: float | None = None,
+        azimuth_rad: float | None = None,
+        azimuth_deg: float | None = None,
+        albedo: float | None = None,
+        sky: Literal["isotropic", "perez"] | None = None,
+        flow_control: Literal["difference", "supply"] | None = None,
+        v_flow_max_m3_s: float | None = None,
+        v_flow_max_l_s: float | None = None,
+        v_flow_max_l_min: float | None = None,
+        v_flow_max_l_h: float | None = None,
+        v_flow_max_m3_h: float | None = None,
+        start_difference_k: float | None = None,
+        stop_difference_k: float | None = None,
+        flow_from_difference_k: float | None = None,
+        flow_full_difference_k: float | None = None,
+        supply_set_k: float | None = None,
+        supply_set_degc: float | None = None,
+        supply_high_k: float | None = None,
+        supply_high_degc: float | None = None,
+        return_max_k: float | None = None,
+        return_max_degc: float | None = None,
+        collector_max_k: float | None = None,
+        collector_max_degc: float | None = None,
+        pump_w: float | None = None,
+        pump_kw: float | None = None,
+        pump_mw: float | None = None,
+        enable: float | None = None,
+        t_outdoor_k: float | None = None,
+        t_outdoor_degc: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "solar_collector".
+
+        Solar thermal collectors as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        collector
+            Which collectors: gives the coefficients that are not stated. One of flat_plate, cpc. Default:
+            flat_plate.
+        area_m2
+            Area of the collectors, m2. Default: 12.0. Also area_cm2.
+        eta0
+            Efficiency without losses.
+        a1_w_m2_k
+            Linear loss, W/(m2 K).
+        a2
+            Quadratic loss, W/(m2 K2).
+        b0
+            Change of the efficiency with the angle of incidence of the beam.
+        k_diffuse
+            Efficiency for diffuse irradiance over that of beam at a right angle. Default: 0.9.
+        capacity_j_m2_k
+            Heat capacity with content, J/(m2 K). Default: 7000.0. Also capacity_j_m2_degc.
+        tilt_rad
+            Tilt from the horizontal, rad. Default: 0.6108652381980153. Also tilt_deg.
+        azimuth_rad
+            Where they look, from south, west positive, rad. Default: 0.0. Also azimuth_deg.
+        albedo
+            Albedo of the ground before them. Default: 0.2.
+        sky
+            How the sky shines. One of isotropic, perez. Default: perez.
+        flow_control
+            How the pump sets its flow. One of difference, supply. Default: difference.
+        v_flow_max_m3_s
+            Full flow, as water of the same capacity flow, m3/s. Default: 0.0003333333333333333. Also
+            v_flow_max_l_s, v_flow_max_l_min, v_flow_max_l_h, v_flow_max_m3_h.
+        start_difference_k
+            The pump starts where the collector is warmer by more, K. Default: 3.0.
+        stop_difference_k
+            It stops where the collector is warmer by less, K. Default: 2.0.
+        flow_from_difference_k
+            With `difference`: above this the flow rises, K. Default: 3.0.
+        flow_full_difference_k
+            With `difference`: from here on the flow is full, K. Default: 7.0.
+        supply_set_k
+            With `supply`: the set supply temperature, K. Default: 333.15. Also supply_set_degc.
+        supply_high_k
+            With `supply`: that where the water comes back warmer than `supply_set_k`, K. Default: 353.15. Also
+            supply_high_degc.
+        return_max_k
+            The pump rests while the water comes back warmer: the storage is full, K. Default: 358.15. Also
+            return_max_degc.
+        collector_max_k
+            The pump does not start while the collector is hotter: it stagnates, K. Default: 368.15. Also
+            collector_max_degc.
+        pump_w
+            Electricity of the pump, W. Default: 40.0. Also pump_kw, pump_mw.
+        enable
+            1 releases the pump, 0 keeps it off, while nothing drives it. Default: 1.0.
+        t_outdoor_k
+            Outdoor temperature while neither weather nor anything else drives it, K. Default: 283.15. Also
+            t_outdoor_degc.
+        """
+    def mixing_station(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        set_by: Literal["curve", "signal"] | None = None,
+        supply_set_k: float | None = None,
+        supply_set_degc: float | None = None,
+        nominal_supply_k: float | None = None,
+        nominal_supply_degc: float | None = None,
+        room_k: float | None = None,
+        room_degc: float | None = None,
+        design_outdoor_k: float | None = None,
+        design_outdoor_degc: float | None = None,
+        exponent: float | None = None,
+        supply_min_k: float | None = None,
+        supply_min_degc: float | None = None,
+        supply_max_k: float | None = None,
+        supply_max_degc: float | None = None,
+        stroke_s: float | None = None,
+        stroke_min: float | None = None,
+        stroke_h: float | None = None,
+        stroke_d: float | None = None,
+        pump_w: float | None = None,
+        pump_kw: float | None = None,
+        pump_mw: float | None = None,
+        t_outdoor_k: float | None = None,
+        t_outdoor_degc: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "mixing_station".
+
+        A mixing station as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        set_by
+            Where the set temperature comes from. One of curve, signal. Default: curve.
+        supply_set_k
+            Set temperature with `set_by = "signal"` while nothing drives it, K. Default: 313.15. Also
+            supply_set_degc.
+        nominal_supply_k
+            Supply at the design outdoor temperature, K. Default: 333.15. Also nominal_supply_degc.
+        room_k
+            Room temperature of the curve, K. Default: 294.15. Also room_degc.
+        design_outdoor_k
+            Outdoor temperature of the design, K. Default: 259.15. Also design_outdoor_degc.
+        exponent
+            Exponent of the emitters: 1.3 of radiators, 1.1 of floors. Default: 1.3.
+        supply_min_k
+            The supply is not set colder, K. Default: 293.15. Also supply_min_degc.
+        supply_max_k
+            The supply is not set warmer, K. Default: 353.15. Also supply_max_degc.
+        stroke_s
+            Time in which the mixer turns from one end to the other, s; 0 at once. Default: 60.0. Also
+            stroke_min, stroke_h, stroke_d.
+        pump_w
+            Electricity of the pump while water flows, W. Default: 30.0. Also pump_kw, pump_mw.
+        t_outdoor_k
+            Outdoor temperature while neither weather nor anything else drives it, K. Default: 275.15. Also
+            t_outdoor_degc.
+        """
+    def pv(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        peak_w: float | None = None,
+        peak_kw: float | None = None,
+        peak_mw: float | None = None,
+        tilt_rad: float | None = None,
+        tilt_deg: float | None = None,
+        azimuth_rad: float | None = None,
+        azimuth_deg: float | None = None,
+        albedo: float | None = None,
+        sky: Literal["isotropic", "perez"] | None = None,
+        power_slope: float | None = None,
+        noct_k: float | None = None,
+        noct_degc: float | None = None,
+        system_efficiency: float | None = None,
+        inverter_w: float | None = None,
+        inverter_kw: float | None = None,
+        inverter_mw: float | None = None,
+        t_outdoor_k: float | None = None,
+        t_outdoor_degc: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "pv".
+
+        Photovoltaics as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        peak_w
+            Power at 1000 W/m2 and cells of 25 degC, W. Default: 10000.0. Also peak_kw, peak_mw.
+        tilt_rad
+            Tilt from the horizontal, rad. Default: 0.6108652381980153. Also tilt_deg.
+        azimuth_rad
+            Where it looks, from south, west positive, rad. Default: 0.0. Also azimuth_deg.
+        albedo
+            Albedo of the ground before it. Default: 0.2.
+        sky
+            How the sky shines. One of isotropic, perez. Default: perez.
+        power_slope
+            Change of the power with the temperature of the cells, 1/K. Default: -0.004.
+        noct_k
+            Temperature of the cells at 800 W/m2 and air of 20 degC, K. Default: 319.15. Also noct_degc.
+        system_efficiency
+            Share of the power that cables, inverter, dirt and angles leave. Default: 0.86.
+        inverter_w
+            Largest power of the inverter, W. Also inverter_kw, inverter_mw.
+        t_outdoor_k
+            Outdoor temperature while neither weather nor anything else drives it, K. Default: 283.15. Also
+            t_outdoor_degc.
+        """
+    def battery(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        mode: Literal["power", "grid_power"] | None = None,
+        power_w: float | None = None,
+        power_kw: float | None = None,
+        power_mw: float | None = None,
+        grid_set_w: float | None = None,
+        grid_set_kw: float | None = None,
+        grid_set_mw: float | None = None,
+        capacity_j: float | None = None,
+        capacity_kwh: float | None = None,
+        capacity_mwh: float | None = None,
+        charge_max_w: float | None = None,
+        charge_max_kw: float | None = None,
+        charge_max_mw: float | None = None,
+        discharge_max_w: float | None = None,
+        discharge_max_kw: float | None = None,
+        discharge_max_mw: float | None = None,
+        charge_efficiency: float | None = None,
+        discharge_efficiency: float | None = None,
+        self_discharge_w: float | None = None,
+        self_discharge_kw: float | None = None,
+        self_discharge_mw: float | None = None,
+        soc_min: float | None = None,
+        soc_max: float | None = None,
+        initial_soc: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "battery".
+
+        A battery as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        mode
+            What it is told. One of power, grid_power. Default: grid_power.
+        power_w
+            Set power in `power` mode while nothing drives it, W; negative is discharged. Default: 0.0. Also
+            power_kw, power_mw.
+        grid_set_w
+            Set power of house and battery in `grid_power` mode while nothing drives it, W; negative is fed in.
+            Default: 0.0. Also grid_set_kw, grid_set_mw.
+        capacity_j
+            Capacity, J. Default: 36000000.0. Also capacity_kwh, capacity_mwh.
+        charge_max_w
+            Largest power of charging at the connection, W. Default: 5000.0. Also charge_max_kw, charge_max_mw.
+        discharge_max_w
+            Largest power of discharging at the connection, W. Default: 5000.0. Also discharge_max_kw,
+            discharge_max_mw.
+        charge_efficiency
+            Efficiency of charging. Default: 0.95.
+        discharge_efficiency
+            Efficiency of discharging. Default: 0.95.
+        self_discharge_w
+            What it loses all the time, W. Default: 0.0. Also self_discharge_kw, self_discharge_mw.
+        soc_min
+            Smallest state of charge to which it is discharged. Default: 0.05.
+        soc_max
+            Largest state of charge to which it is charged. Default: 1.0.
+        initial_soc
+            State of charge at the start. Default: 0.5.
+        """
+    def household(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        annual_j: float | None = None,
+        annual_kwh: float | None = None,
+        annual_mwh: float | None = None,
+        inhabitants: int | None = None,
+        seed: int | None = None,
+        base_share: float | None = None,
+        season_amplitude: float | None = None,
+        workday_absence: float | None = None,
+        weekend_absence: float | None = None,
+        gain_share: float | None = None,
+        utc_offset_s: float | None = None,
+        utc_offset_min: float | None = None,
+        utc_offset_h: float | None = None,
+        utc_offset_d: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "household".
+
+        The people of a house as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        annual_j
+            Electricity in a year, J. Default: 25200000000.0. Also annual_kwh, annual_mwh.
+        inhabitants
+            People who live there. Default: 6.
+        seed
+            Number that chooses the sequence of everything random. Default: 1.
+        base_share
+            Share of the electricity that is always drawn. Default: 0.3.
+        season_amplitude
+            How much more is drawn on the darkest day than on average, relative. Default: 0.15.
+        workday_absence
+            Probability with which a person is out on a workday. Default: 0.7.
+        weekend_absence
+            The same of a day at the weekend. Default: 0.4.
+        gain_share
+            Share of the electricity that heats the rooms, output `appliances_w`. 0: the building counts it
+            with its people. Default: 0.0.
+        utc_offset_s
+            Local clock over UTC, s. Default: 3600.0. Also utc_offset_min, utc_offset_h, utc_offset_d.
+        """
+    def electric_load(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        power_w: float | None = None,
+        power_kw: float | None = None,
+        power_mw: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "electric_load".
+
+        An electric load as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        power_w
+            Power while nothing drives it, W. Default: 0.0. Also power_kw, power_mw.
+        """
+    def electric_vehicle(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        charging_w: float | None = None,
+        charging_kw: float | None = None,
+        charging_mw: float | None = None,
+        daily_j: float | None = None,
+        daily_kwh: float | None = None,
+        daily_mwh: float | None = None,
+        arrival_s: float | None = None,
+        arrival_min: float | None = None,
+        arrival_h: float | None = None,
+        arrival_d: float | None = None,
+        arrival_deviation_s: float | None = None,
+        arrival_deviation_min: float | None = None,
+        arrival_deviation_h: float | None = None,
+        arrival_deviation_d: float | None = None,
+        seed: int | None = None,
+        utc_offset_s: float | None = None,
+        utc_offset_min: float | None = None,
+        utc_offset_h: float | None = None,
+        utc_offset_d: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "electric_vehicle".
+
+        An electric car at its wall box as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        charging_w
+            Power while it charges, W. Default: 11000.0. Also charging_kw, charging_mw.
+        daily_j
+            Energy of a day, J. Default: 28800000.0. Also daily_kwh, daily_mwh.
+        arrival_s
+            Mean time of day at which charging begins, s. Default: 64800.0. Also arrival_min, arrival_h,
+            arrival_d.
+        arrival_deviation_s
+            Standard deviation of that time, s. Default: 3600.0. Also arrival_deviation_min,
+            arrival_deviation_h, arrival_deviation_d.
+        seed
+            Number that chooses the sequence of arrivals. Default: 1.
+        utc_offset_s
+            Local clock over UTC, s. Default: 3600.0. Also utc_offset_min, utc_offset_h, utc_offset_d.
+        """
+    def grid_connection(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "grid_connection".
+
+        The electric connection of a house as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
         """
     def ideal_house(
         self,
@@ -4553,6 +5773,115 @@ class _Controller:
             Position of the valve for cooling. Default: 1.0.
         modulating
             Whether the power follows the factor, or is on or off. Default: True.
+        interval_s
+            Time between two updates, s; 0 updates at every step. Default: 0.0. Also interval_min, interval_h,
+            interval_d.
+        offset_s
+            Time of the first update, s. Default: 0.0. Also offset_min, offset_h, offset_d.
+        """
+    def two_sensors(
+        self,
+        *,
+        id: str | None = None,
+        measures_on: str | None = None,
+        measures_off: str | None = None,
+        acts_on: str | None = None,
+        on_below_k: float | None = None,
+        on_below_degc: float | None = None,
+        off_above_k: float | None = None,
+        off_above_degc: float | None = None,
+        on_output: float | None = None,
+        off_output: float | None = None,
+        initially_on: bool | None = None,
+        interval_s: float | None = None,
+        interval_min: float | None = None,
+        interval_h: float | None = None,
+        interval_d: float | None = None,
+        offset_s: float | None = None,
+        offset_min: float | None = None,
+        offset_h: float | None = None,
+        offset_d: float | None = None,
+    ) -> str | None:
+        """Adds `[[controller]]` with kind = "two_sensors".
+
+        On by one sensor, off by another, as written in a model file.
+
+        Parameters
+        ----------
+        id
+            Name; default that of the first signal, with .controller
+        measures_on
+            Channel it measures
+        measures_off
+            Channel it measures
+        acts_on
+            Signal it drives
+        on_below_k
+            On where `measures_on` is below this, K. Also on_below_degc.
+        off_above_k
+            Off where `measures_off` is above this, K. Also off_above_degc.
+        on_output
+            Output while on. Default: 1.0.
+        off_output
+            Output while off. Default: 0.0.
+        initially_on
+            On at the start of a run. Default: False.
+        interval_s
+            Time between two updates, s; 0 updates at every step. Default: 0.0. Also interval_min, interval_h,
+            interval_d.
+        offset_s
+            Time of the first update, s. Default: 0.0. Also offset_min, offset_h, offset_d.
+        """
+    def tank_charging(
+        self,
+        *,
+        id: str | None = None,
+        measures_tank: str | None = None,
+        measures_source: str | None = None,
+        acts_on: str | None = None,
+        on_below_k: float | None = None,
+        on_below_degc: float | None = None,
+        off_above_k: float | None = None,
+        off_above_degc: float | None = None,
+        warmer_by_difference_k: float | None = None,
+        on_output: float | None = None,
+        off_output: float | None = None,
+        initially_on: bool | None = None,
+        interval_s: float | None = None,
+        interval_min: float | None = None,
+        interval_h: float | None = None,
+        interval_d: float | None = None,
+        offset_s: float | None = None,
+        offset_min: float | None = None,
+        offset_h: float | None = None,
+        offset_d: float | None = None,
+    ) -> str | None:
+        """Adds `[[controller]]` with kind = "tank_charging".
+
+        The charging of a tank of hot water as written in a model file.
+
+        Parameters
+        ----------
+        id
+            Name; default that of the first signal, with .controller
+        measures_tank
+            Channel it measures
+        measures_source
+            Channel it measures
+        acts_on
+            Signal it drives
+        on_below_k
+            On where the top of the tank is below this, K. Default: 323.15. Also on_below_degc.
+        off_above_k
+            Off where the top of the tank is above this, K. Default: 338.15. Also off_above_degc.
+        warmer_by_difference_k
+            The storage must be warmer than the tank by more than this, K. Default: 0.0.
+        on_output
+            Output while on: of the flow of a circuit, m3/s. Default: 1.0.
+        off_output
+            Output while off. Default: 0.0.
+        initially_on
+            On at the start of a run. Default: False.
         interval_s
             Time between two updates, s; 0 updates at every step. Default: 0.0. Also interval_min, interval_h,
             interval_d.

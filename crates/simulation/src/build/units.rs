@@ -8,12 +8,13 @@ use crate::model_file::InterfaceEntry;
 use crate::plan::{GridPort, PlannedCircuit, PlannedUnit};
 use crate::temperatures::SURROUNDINGS;
 use crate::wording::refused;
+use anergy_core::clock::NS_PER_S;
 use anergy_core::ids::{EdgeId, SignalId};
 use anergy_core::signal::{SignalSpec, SignalTable};
 use anergy_network::elements::{Element, ElementParams};
 use anergy_network::graph::Network;
 use anergy_prosumer::equipment::Equipment;
-use anergy_prosumer::thermal_unit::UnitPort;
+use anergy_prosumer::thermal_unit::{START_UNIX, UnitPort};
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -206,7 +207,10 @@ impl Builder<'_> {
         for (i, spec) in self.model.units.iter().enumerate() {
             let Some(equipment) = houses.equipment[i].take() else { continue };
             let first = signals.specs().len();
-            for input in equipment.inputs() {
+            for mut input in equipment.inputs() {
+                if input.follows == Some(START_UNIX) {
+                    input.initial = super::start_unix_ns(self.model) as f64 / NS_PER_S as f64;
+                }
                 let name = format!("{}.{}", spec.id, input.name);
                 let around = ["outdoor", "ambient", "ground"];
                 let around = around.iter().any(|word| input.name.contains(word));
@@ -234,6 +238,7 @@ impl Builder<'_> {
                 inputs: first..signals.specs().len(),
                 state: state_len..state_len + states,
                 outputs: output_len..output_len + outputs,
+                turn: 0,
             });
             state_len += states;
             output_len += outputs;

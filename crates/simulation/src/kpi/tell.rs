@@ -176,7 +176,7 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
             Some(state.unit_outputs[unit.outputs.start + place])
         };
         let (heat_j, cold_j) = (output("heat_j"), output("cold_j"));
-        let electric_j = output("electric_j");
+        let (electric_j, fuel_j) = (output("electric_j"), output("fuel_j"));
         let starts = output("starts");
         let discomfort = (output("dc_heat_k_s"), output("dc_cool_k_s"));
         let shown = [
@@ -188,6 +188,15 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
             ("cold_kwh", cold_j, J_PER_KWH),
             ("discomfort_heating_k_h", discomfort.0, S_PER_H),
             ("discomfort_cooling_k_h", discomfort.1, S_PER_H),
+            ("fuel_kwh", fuel_j, J_PER_KWH),
+            ("generated_kwh", output("generated_j"), J_PER_KWH),
+            ("imported_kwh", output("import_j"), J_PER_KWH),
+            ("exported_kwh", output("export_j"), J_PER_KWH),
+            ("self_consumption_percent", output("self_consumption"), 0.01),
+            ("self_sufficiency_percent", output("self_sufficiency"), 0.01),
+            ("full_cycles", output("full_cycles"), 1.0),
+            ("water_drawn_m3", output("drawn_m3"), 1.0),
+            ("discomfort_water_k_l", output("dc_water_k_m3"), 1e-3),
             ("unmet_kwh", plan.kpi_places.unmet[i].map(|_| sums.unmet_j), J_PER_KWH),
         ];
         for (name, value, per) in shown {
@@ -200,7 +209,9 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
         let useful_j = heat_j.unwrap_or(0.0) + cold_j.unwrap_or(0.0);
         if let Some(electric_j) = electric_j {
             add(&mut to, "electricity_kwh", electric_j / J_PER_KWH);
-            add(&mut to, "seasonal_cop", useful_j / electric_j);
+            if fuel_j.is_none() {
+                add(&mut to, "seasonal_cop", useful_j / electric_j);
+            }
         } else if sums.electric_j != 0.0 {
             add(&mut to, "electricity_kwh", sums.electric_j / J_PER_KWH);
         }
@@ -214,7 +225,7 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
             more(&mut site.starts, starts);
             more(&mut site.discomfort_heating_k_s, discomfort.0);
             more(&mut site.discomfort_cooling_k_s, discomfort.1);
-            if let Some(electric_j) = electric_j {
+            if let Some(electric_j) = electric_j.filter(|_| fuel_j.is_none()) {
                 let parts = [heat_j.unwrap_or(0.0), cold_j.unwrap_or(0.0), electric_j];
                 let sums = site.generated_j.get_or_insert_default();
                 sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);

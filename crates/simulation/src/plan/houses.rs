@@ -6,7 +6,7 @@ use anergy_core::ids::SignalId;
 use anergy_network::interface::Drive;
 use anergy_prosumer::circuit::Circuit;
 use anergy_prosumer::equipment::Equipment;
-use anergy_prosumer::thermal_unit::UnitPort;
+use anergy_prosumer::thermal_unit::{Flag, UnitPort};
 use smol_str::SmolStr;
 use std::ops::Range;
 
@@ -22,6 +22,8 @@ pub(crate) struct PlannedUnit {
     pub inputs: Range<usize>,
     pub state: Range<usize>,
     pub outputs: Range<usize>,
+    /// Its turn among the units of a step: 0 unless an input follows its site.
+    pub turn: usize,
 }
 
 impl PlannedUnit {
@@ -59,6 +61,32 @@ pub(crate) struct PlannedDrive {
     pub drive: Drive,
     /// The longest step that its controllers follow.
     pub longest_step: Option<Time>,
+}
+
+/// An output of a unit that says that something is wrong while it is not 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct UnitFlag {
+    pub unit: usize,
+    /// Its place among the outputs of all units.
+    pub output: usize,
+    pub flag: Flag,
+}
+
+/// What an input of a unit sums up of the other units of its site.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum OfSite {
+    /// One of their outputs, at these places.
+    Outputs(Vec<usize>),
+    /// The electricity of these units and pumps.
+    Electricity { units: Vec<usize>, pumps: Vec<usize> },
+}
+
+/// An input of a unit that follows what the other units of its site did in the same step.
+#[derive(Debug, Clone)]
+pub(crate) struct SiteInput {
+    pub unit: usize,
+    pub signal: SignalId,
+    pub of: OfSite,
 }
 
 /// A circuit of a house.

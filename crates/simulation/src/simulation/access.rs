@@ -99,6 +99,7 @@ impl Simulation {
             && own.sensors.len() == other.sensors.len()
             && own.sensors.iter().zip(&other.sensors).all(|(own, other)| own.fits(other))
             && own.network.density_kg_m3.len() == other.network.density_kg_m3.len()
+            && own.unit_flags.len() == other.unit_flags.len()
             && own.stations.len() == other.stations.len()
             && own.meters.len() == other.meters.len()
             && own.kpis.fits(&other.kpis)

@@ -114,16 +114,7 @@ impl Simulation {
         for circuit in 0..self.plan.circuits.len() {
             self.go_round(circuit)?;
         }
-        let (plan, state) = (&self.plan, &mut self.state);
-        for (i, unit) in plan.units.iter().enumerate() {
-            state.unit_exchange[i] = unit.equipment.advance(
-                dt_s,
-                &Signals(&state.signals[unit.inputs.clone()]),
-                &state.unit_ports[unit.slots.clone()],
-                &mut state.unit_states[unit.state.clone()],
-                &mut state.unit_outputs[unit.outputs.clone()],
-            );
-        }
+        self.advance_in_turn(dt_s);
         Ok(())
     }
 
@@ -151,8 +142,9 @@ impl Simulation {
     /// Units of houses show what they hold before the first step; nothing moves.
     pub(super) fn show_units(&mut self) {
         let (plan, state) = (&self.plan, &mut self.state);
-        let of_house =
-            |unit: &&PlannedUnit| unit.ports.iter().any(|p| p.name != UnitPort::ONLY.name);
+        let of_house = |unit: &&PlannedUnit| {
+            unit.ports.is_empty() || unit.ports.iter().any(|p| p.name != UnitPort::ONLY.name)
+        };
         for unit in plan.units.iter().filter(of_house) {
             let mut held = state.unit_states[unit.state.clone()].to_vec();
             unit.equipment.advance(

@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Tree;
 use crate::model::{CircuitSpec, UnitSpec};
 use crate::model_file::CircuitEntry;
-use anergy_prosumer::equipment::EquipmentParams;
+use anergy_prosumer::equipment::{EquipmentParams, WITHOUT_PORTS};
 use smol_str::{SmolStr, format_smolstr};
 
 /// Whether a circuit passes a unit.
@@ -75,6 +75,8 @@ impl ModelReader<'_> {
             self.reader.report(problem.with_hint(hint));
             return None;
         }
+        // No water passes it: it needs neither circuit nor station.
+        let dry = words.tree.text("kind").is_some_and(|kind| WITHOUT_PORTS.contains(&kind));
         let (id, port) = if of_site {
             let site = self.required_text(&mut words, "site")?;
             let name = self.text_or(&mut words, "name", "unit");
@@ -82,9 +84,10 @@ impl ModelReader<'_> {
             let station = self.text_or(&mut words, "station", "station");
             let wanted = format!("{site}.{station}");
             let id = format!("{site}.{name}");
-            let edge = stations.edges.get(&wanted).cloned();
+            let edge = stations.edges.get(&wanted).filter(|_| !dry || named).cloned();
             // A unit of circuits only needs no station.
-            let inside = !named && !stations.wrong.contains(&wanted) && in_circuit(circuits, &id);
+            let inside =
+                !named && (dry || !stations.wrong.contains(&wanted) && in_circuit(circuits, &id));
             let Some(edge) = edge.or_else(|| inside.then(String::new)) else {
                 // Its station may be there, and wrong.
                 if !stations.wrong.contains(&wanted) {
@@ -100,7 +103,7 @@ impl ModelReader<'_> {
             (id, edge)
         } else {
             let id = self.required_text(&mut words, "id");
-            let inside = id.as_deref().is_some_and(|id| in_circuit(circuits, id));
+            let inside = dry || id.as_deref().is_some_and(|id| in_circuit(circuits, id));
             let port = match inside && words.tree.get("port").is_none() {
                 true => Some(String::new()),
                 false => self.required_text(&mut words, "port"),

@@ -1,0 +1,387 @@
+//! Generators that burn gas: condensing boiler, gas engine with heat and power, Stirling engine with an auxiliary boiler.
+//!
+//! **Equation** heat, fuel and electricity of a [steady state](map) times what time does to the
+//! [burner](crate::burner). The flow keeps the difference of supply and return, `m = Q/(cp dT)`, is constant, or keeps
+//! the supply, `m = Q/(cp (T_set - T_return))`. An auxiliary boiler and an electric rod, where the unit has them, heat
+//! the same water. All fuel that does not become heat or electricity is lost: `Q = E_drawn + (H - losses)`, where
+//! electricity generated counts negative; heat that start and stop shift between metal and water is part of the losses.
+//!
+//! **Internal control** the load is the command, or what lifts a constant flow to the set supply: then the unit
+//! stops where its smallest load overshoots by [`BAND_K`], and starts again where it no longer does. Return and
+//! supply above their limits stop the unit; it may start again when both are below by the restart difference.
+//!
+//! **Assumptions** no water content. Where the water takes less heat than planned (less flow, a supply that would be too hot),
+//! fuel and electricity shrink in proportion. **Validity** that of each map, whose arguments are clamped. **Numerics** map and limits take the
+//! return temperature of the step before; what the water got is booked.
+//!
+//! **Sources** `zinsmeister2022`, `prohmo`; values without a source are marked assumed in `docs/src/generators.md`.
+
+pub mod boiler;
+pub mod chp;
+pub mod map;
+pub mod stirling;
+
+use crate::burner::{Burner, BurnerState, Command, Means};
+use crate::thermal_unit::{
+    Exchange, Flag, ThermalUnit, UnitInput, UnitOutput, UnitPort, capacity_w_k,
+};
+use anergy_core::medium::Medium;
+use anergy_core::port::{Outlet, PortFlow, PortRequest};
+use anergy_core::signal::Signals;
+use map::SteadyMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The set supply may be missed by this before a unit that holds it stops, K.
+const BAND_K: f64 = 5.0;
+/// A supply that is held leaves at least this above the return, K.
+const LEAST_DIFFERENCE_K: f64 = 0.5;
+
+/// How the pump of a generator sets its flow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GeneratorFlow {
+    /// Supply and return differ by a given temperature.
+    ConstantTemperatureDifference,
+    /// They differ as measured at the reference boiler: less than the given temperature at part load.
+    MeasuredTemperatureDifference,
+    /// The flow is given, the temperature difference floats.
+    ConstantFlow,
+    /// The flow is set so that the water leaves with the set supply temperature.
+    ConstantSupply,
+}
+
+/// What the command of a generator is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GeneratorCommand {
+    /// The load, `modulation`.
+    Power,
+    /// The supply temperature, `supply_set_k`, with a constant flow; `modulation` above 0 releases it.
+    SupplyTemperature,
+}
+
+/// How the flow follows from the heat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum FlowRule {
+    Difference(f64),
+    Measured(f64),
+    /// Capacity flow, W/K.
+    Flow(f64),
+    /// Largest capacity flow, W/K.
+    Supply(f64),
+}
+
+/// Where the unit stops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Limits {
+    return_max_k: f64,
+    supply_max_k: f64,
+    restart_k: f64,
+}
+
+/// A burner with what it does in steady operation.
+#[derive(Debug, Clone, PartialEq)]
+struct Stage {
+    burner: Burner,
+    map: SteadyMap,
+}
+
+/// A generator that burns gas, ready to run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Combustion {
+    main: Stage,
+    aux: Option<Stage>,
+    rod_rated_w: f64,
+    command: GeneratorCommand,
+    flow: FlowRule,
+    limits: Limits,
+    /// Electricity while nothing burns, and while something does, W.
+    idle_w: f64,
+    running_w: f64,
+    /// Size over that of the unit whose data these are.
+    size: f64,
+    initial: [f64; 5],
+    medium: Medium,
+}
+
+/// State: length of the step, s; return and supply, K; whether a limit tripped; whether the set supply is overshot at
+/// the smallest load; heat, fuel, electricity drawn and generated so far, J; then the burners.
+const STEP_S: usize = 0;
+const RETURN_K: usize = 1;
+const SUPPLY_K: usize = 2;
+const TRIPPED: usize = 3;
+const OVERSHOT: usize = 4;
+const HEAT_J: usize = 5;
+const FUEL_J: usize = 6;
+const ELECTRIC_J: usize = 7;
+const GENERATED_J: usize = 8;
+const BURNERS: usize = 9;
+
+const MODULATION: usize = 0;
+const ENABLE: usize = 1;
+const SUPPLY_SET: usize = 2;
+const AUX: usize = 3;
+const ROD: usize = 4;
+
+/// What the unit does in a step.
+struct Plan {
+    main: Means,
+    aux: Means,
+    rod_w: f64,
+    next_main: BurnerState,
+    next_aux: BurnerState,
+    tripped: bool,
+    overshot: bool,
+    m_flow_kg_s: f64,
+}
+
+impl Plan {
+    /// Heat into the water, W.
+    fn heat_w(&self) -> f64 {
+        self.main.heat_w + self.aux.heat_w + self.rod_w
+    }
+}
+
+impl Combustion {
+    fn plan(&self, signals: &Signals<'_>, state: &[f64]) -> Plan {
+        let return_k = state[RETURN_K];
+        let limits = &self.limits;
+        let inside_k = if state[TRIPPED] != 0.0 { limits.restart_k } else { 0.0 };
+        let tripped = return_k > limits.return_max_k - inside_k
+            || state[SUPPLY_K] > limits.supply_max_k - inside_k;
+        let enabled = signals.get(ENABLE) >= 0.5;
+        let (modulation, overshot) = self.load(signals, state);
+        let run = |stage: &Stage, at: usize, modulation: f64| {
+            let mut next = BurnerState::read(&state[at..]);
+            let modulation = if enabled { modulation } else { 0.0 };
+            let command = Command { modulation, tripped };
+            let steady = |modulation| stage.map.at(modulation, return_k);
+            let means = stage.burner.run(state[STEP_S], &command, &mut next, steady);
+            (means, next)
+        };
+        let (main, next_main) = run(&self.main, BURNERS, modulation);
+        let (aux, next_aux) = match &self.aux {
+            Some(aux) => run(aux, BURNERS + BurnerState::LEN, signals.get(AUX)),
+            None => (Means::default(), BurnerState::new()),
+        };
+        let rod_w = if self.aux.is_some() && enabled && !tripped {
+            self.rod_rated_w * signals.get(ROD).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let flow_heat_w = main.flow_heat_w + aux.flow_heat_w + rod_w;
+        let capacity_w_k = match self.flow {
+            FlowRule::Difference(difference_k) => flow_heat_w / difference_k,
+            FlowRule::Measured(difference_k) => {
+                flow_heat_w / (difference_k * map::measured_share(main.modulation, return_k))
+            }
+            FlowRule::Flow(capacity_w_k) => {
+                let rod = if rod_w > 0.0 { 1.0 } else { 0.0 };
+                capacity_w_k * main.flow.max(aux.flow).max(rod)
+            }
+            FlowRule::Supply(most_w_k) => {
+                let lift_k = (signals.get(SUPPLY_SET) - return_k).max(LEAST_DIFFERENCE_K);
+                (flow_heat_w / lift_k).min(most_w_k)
+            }
+        };
+        let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
+        Plan { main, aux, rod_w, next_main, next_aux, tripped, overshot, m_flow_kg_s }
+    }
+
+    /// The load that is asked for, and whether its smallest one overshoots a set supply.
+    fn load(&self, signals: &Signals<'_>, state: &[f64]) -> (f64, bool) {
+        let modulation = signals.get(MODULATION);
+        let (GeneratorCommand::SupplyTemperature, FlowRule::Flow(capacity_w_k)) =
+            (self.command, self.flow)
+        else {
+            return (modulation, false);
+        };
+        if modulation <= 0.0 {
+            return (0.0, false);
+        }
+        let return_k = state[RETURN_K];
+        let heat_w = |modulation| self.main.map.at(modulation, return_k).heat_w;
+        let wanted_w = capacity_w_k * (signals.get(SUPPLY_SET) - return_k);
+        let least = self.main.burner.modulation_min;
+        let least_w = heat_w(least);
+        let phase_on = BurnerState::read(&state[BURNERS..]).phase.on();
+        let band_w = if phase_on { BAND_K * capacity_w_k } else { 0.0 };
+        if least_w > wanted_w + band_w {
+            return (0.0, true);
+        }
+        (map::solved(heat_w, wanted_w, least), false)
+    }
+
+    /// A state of the burners, behind what the unit itself remembers.
+    fn state_len(&self) -> usize {
+        BURNERS + BurnerState::LEN * if self.aux.is_some() { 2 } else { 1 }
+    }
+}
+
+impl ThermalUnit for Combustion {
+    fn ports(&self) -> Vec<UnitPort> {
+        vec![UnitPort { name: "water".into(), sets_flow: true, leads: false }]
+    }
+
+    fn inputs(&self) -> Vec<UnitInput> {
+        let ratio = |i: usize, name| UnitInput {
+            name,
+            unit: "",
+            initial: self.initial[i],
+            min: 0.0,
+            max: 1.0,
+            follows: None,
+        };
+        let supply_set =
+            UnitInput { unit: "k", max: f64::INFINITY, ..ratio(SUPPLY_SET, "supply_set_k") };
+        let mut inputs = vec![ratio(MODULATION, "modulation"), ratio(ENABLE, "enable"), supply_set];
+        if self.aux.is_some() {
+            inputs.extend([ratio(AUX, "aux_modulation"), ratio(ROD, "rod_modulation")]);
+        }
+        inputs
+    }
+
+    fn outputs(&self) -> Vec<UnitOutput> {
+        let mut outputs = vec![
+            UnitOutput::new("q_flow_w", "W"),
+            UnitOutput::new("electric_w", "W"),
+            UnitOutput::new("fuel_w", "W"),
+            UnitOutput::new("efficiency", "1"),
+            UnitOutput::new("t_supply_k", "K"),
+            UnitOutput::new("load", "1"),
+            UnitOutput::new("phase", "1"),
+            UnitOutput::new("tripped", "1"),
+            UnitOutput::new("starts", "1"),
+            UnitOutput::new("operating_s", "s"),
+            UnitOutput::new("heat_j", "J"),
+            UnitOutput::new("fuel_j", "J"),
+            UnitOutput::new("electric_j", "J"),
+            UnitOutput::new("generated_w", "W"),
+            UnitOutput::new("generated_j", "J"),
+        ];
+        if self.aux.is_some() {
+            outputs.extend([
+                UnitOutput::new("aux_w", "W"),
+                UnitOutput::new("aux_phase", "1"),
+                UnitOutput::new("aux_starts", "1"),
+                UnitOutput::new("rod_w", "W"),
+            ]);
+        }
+        outputs
+    }
+
+    fn initial_state(&self, initial_k: f64) -> Vec<f64> {
+        let mut state = vec![0.0; self.state_len()];
+        state[RETURN_K] = initial_k;
+        state[SUPPLY_K] = initial_k;
+        for burner in state[BURNERS..].chunks_exact_mut(BurnerState::LEN) {
+            BurnerState::new().write(burner);
+        }
+        state
+    }
+
+    fn begin(&self, dt_s: f64, state: &mut [f64]) {
+        state[STEP_S] = dt_s;
+    }
+
+    fn request(
+        &self,
+        signals: &Signals<'_>,
+        got: &[PortFlow],
+        state: &mut [f64],
+        wanted: &mut [PortRequest],
+    ) {
+        if let Some(got) = got.first() {
+            state[RETURN_K] = got.t_in_k;
+        }
+        let plan = self.plan(signals, state);
+        let (m_flow_kg_s, heat_w) = (plan.m_flow_kg_s, plan.heat_w());
+        // The supply is no hotter where the water arrives warmer than in the step before.
+        let outlet = match self.flow {
+            FlowRule::Supply(_) if heat_w > 0.0 && m_flow_kg_s > 0.0 => {
+                let planned_k = heat_w / capacity_w_k(&self.medium, m_flow_kg_s);
+                let hottest_k = signals.get(SUPPLY_SET).max(state[RETURN_K] + planned_k);
+                Outlet::Warmed { wanted_w: heat_w, hottest_k }
+            }
+            _ => Outlet::HeatFlow(heat_w),
+        };
+        wanted[0] = PortRequest { m_flow_kg_s, outlet };
+    }
+
+    fn advance(
+        &self,
+        dt_s: f64,
+        signals: &Signals<'_>,
+        ports: &[PortFlow],
+        state: &mut [f64],
+        out: &mut [f64],
+    ) -> Exchange {
+        state[STEP_S] = dt_s;
+        let plan = self.plan(signals, state);
+        let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
+        let q_w = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
+        // What the water took of what was planned.
+        let planned_w = plan.heat_w();
+        let share = if planned_w > 0.0 { (q_w / planned_w).clamp(0.0, 1.0) } else { 1.0 };
+        let on = plan.main.on.max(plan.aux.on);
+        let own_w = self.idle_w * (1.0 - on) + self.running_w * on;
+        let rod_w = share * plan.rod_w;
+        let fuel_w = share * (plan.main.fuel_w + plan.aux.fuel_w);
+        let power_w = share * (plan.main.power_w + plan.aux.power_w);
+        let electric_w = own_w + rod_w - power_w;
+        plan.next_main.write(&mut state[BURNERS..]);
+        if self.aux.is_some() {
+            plan.next_aux.write(&mut state[BURNERS + BurnerState::LEN..]);
+        }
+        state[TRIPPED] = f64::from(u8::from(plan.tripped));
+        state[OVERSHOT] = f64::from(u8::from(plan.overshot));
+        state[RETURN_K] = t_in_k;
+        state[SUPPLY_K] = t_out_k;
+        state[HEAT_J] += dt_s * q_w;
+        state[FUEL_J] += dt_s * fuel_w;
+        state[ELECTRIC_J] += dt_s * electric_w;
+        state[GENERATED_J] += dt_s * power_w.max(0.0);
+        let useful_w = q_w - rod_w + power_w.max(0.0);
+        out[..15].copy_from_slice(&[
+            q_w,
+            electric_w,
+            fuel_w,
+            if fuel_w > 0.0 { useful_w / fuel_w } else { 0.0 },
+            t_out_k,
+            plan.main.modulation * plan.main.on,
+            plan.next_main.phase.number(),
+            state[TRIPPED],
+            plan.next_main.starts,
+            plan.next_main.operating_s,
+            state[HEAT_J],
+            state[FUEL_J],
+            state[ELECTRIC_J],
+            power_w.max(0.0),
+            state[GENERATED_J],
+        ]);
+        if self.aux.is_some() {
+            out[15..].copy_from_slice(&[
+                share * plan.aux.heat_w,
+                plan.next_aux.phase.number(),
+                plan.next_aux.starts,
+                rod_w,
+            ]);
+        }
+        Exchange { electric_w, external_w: q_w - electric_w }
+    }
+
+    fn flags(&self) -> &'static [Flag] {
+        &[Flag {
+            output: "tripped",
+            meaning: "return or supply above its limit: it stops until both are below by the restart difference",
+        }]
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        crate::thermal_unit::scaled_far(self.size)
+    }
+}
+
+#[cfg(test)]
+mod tests;

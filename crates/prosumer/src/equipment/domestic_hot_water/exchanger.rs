@@ -1,0 +1,97 @@
+//! The plate exchanger of a fresh-water station and the flow that its pump needs.
+//!
+//! **Equation** counter flow, `Q = UA (d_1 - d_2)/ln(d_1/d_2)`, `d_1 = T_in - T_set` at the hot end, `d_2 = T_out - T_cold`
+//! at the cold end: with `y = d_2/d_1` it is `(y - 1)/ln y = Q/(UA d_1)`, whose left side rises with `y`; then
+//! `C = Q/(T_in - T_out)`. **Numerics** Newton in `ln y`, where the left side is convex: from above, to rounding in a
+//! few rounds. Where that takes more than the largest flow, or the water is too cold, the largest flow gives what it
+//! can. **Sources** `incropera2007`.
+
+use crate::direct_exchange::conductance_w_k;
+
+/// Less than this at the hot end is none, K.
+const LEAST_K: f64 = 1e-3;
+const MOST_ROUNDS: usize = 30;
+
+/// Exchanger and pump.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Exchanger {
+    pub ua_w_k: f64,
+    /// Largest capacity flow of the pump, W/K.
+    pub most_w_k: f64,
+}
+
+impl Exchanger {
+    /// Capacity flow of the pump, W/K, and heat, W, for water of `flow_w_k` from `inlet_k` to `set_k`.
+    pub fn serve(&self, flow_w_k: f64, inlet_k: f64, set_k: f64, arrives_k: f64) -> (f64, f64) {
+        let wanted_w = flow_w_k * (set_k - inlet_k);
+        if wanted_w <= 0.0 || arrives_k <= inlet_k {
+            return (0.0, 0.0);
+        }
+        let hot_end_k = arrives_k - set_k;
+        if hot_end_k > LEAST_K {
+            let cold_end_k = hot_end_k * ratio(wanted_w / (self.ua_w_k * hot_end_k));
+            let out_k = inlet_k + cold_end_k;
+            if out_k < arrives_k {
+                let pump_w_k = wanted_w / (arrives_k - out_k);
+                if pump_w_k <= self.most_w_k {
+                    return (pump_w_k, wanted_w);
+                }
+            }
+        }
+        let heat_w = conductance_w_k(self.ua_w_k, self.most_w_k, flow_w_k) * (arrives_k - inlet_k);
+        (self.most_w_k, heat_w.min(wanted_w))
+    }
+}
+
+/// `y` of `(y - 1)/ln y = k`.
+fn ratio(k: f64) -> f64 {
+    // With x = ln y: (e^x - 1)/x = k, which rises and is convex in x.
+    let mean = |x: f64| if x.abs() < 1e-5 { 1.0 + 0.5 * x } else { x.exp_m1() / x };
+    let slope = |x: f64| {
+        if x.abs() < 1e-3 { 0.5 + x / 3.0 } else { (x.exp() * (x - 1.0) + 1.0) / (x * x) }
+    };
+    // Above the root: e^(x/2) is below the left side.
+    let mut x = if k >= 1.0 { 2.0 * k.ln() } else { 0.0 };
+    for _ in 0..MOST_ROUNDS {
+        let step = (mean(x) - k) / slope(x);
+        // The mean is above 1/(1 - x) - like tails on the left: steps are kept within the range of doubles.
+        x = (x - step).max(-700.0);
+        if step.abs() < 1e-12 * (1.0 + x.abs()) {
+            break;
+        }
+    }
+    x.exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ratio_of_a_logarithmic_mean() {
+        for y in [1e-6, 0.01, 0.5, 0.999_999, 1.0, 1.5, 20.0, 1e4] {
+            let k: f64 = if y == 1.0 { 1.0 } else { (y - 1.0) / f64::ln(y) };
+            assert!((ratio(k) / y - 1.0).abs() < 1e-6, "{y}: {}", ratio(k));
+        }
+    }
+
+    #[test]
+    fn by_hand_and_by_effectiveness() {
+        let exchanger = Exchanger { ua_w_k: 6000.0, most_w_k: 40.0 / 60.0 * 4180.0 };
+        // 20 l/min from 10 to 45 degC: 1393.3 W/K, 48 767 W, from water of 65 degC: d_1 = 20 K, LMTD 8.128 K.
+        let (flow_w_k, heat_w) = exchanger.serve(4180.0 / 3.0, 283.15, 318.15, 338.15);
+        assert!((heat_w - 48_766.7).abs() < 0.1);
+        let out_k = 338.15 - heat_w / flow_w_k;
+        let (d_1, d_2) = (20.0, out_k - 283.15);
+        assert!(((d_1 - d_2) / f64::ln(d_1 / d_2) - heat_w / 6000.0).abs() < 1e-6, "{out_k}");
+        let by_effectiveness = conductance_w_k(6000.0, flow_w_k, 4180.0 / 3.0) * 55.0;
+        assert!((by_effectiveness - heat_w).abs() < 1e-3);
+        // Water of 46 degC needs more than the pump has; of 40 degC it never gets warm.
+        for arrives_k in [319.15, 313.15] {
+            let (flow_w_k, heat_w) = exchanger.serve(4180.0 / 3.0, 283.15, 318.15, arrives_k);
+            assert!(flow_w_k == exchanger.most_w_k && heat_w < 48_766.0);
+            assert!(283.15 + heat_w / (4180.0 / 3.0) < arrives_k);
+        }
+        assert_eq!(exchanger.serve(1000.0, 283.15, 318.15, 280.0), (0.0, 0.0));
+    }
+}

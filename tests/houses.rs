@@ -1,0 +1,248 @@
+//! Whole houses of the laboratory: generators, storages, hot water and electricity in circuits, through winter days.
+
+#![allow(clippy::unwrap_used)]
+
+use allocation_counter::measure;
+use anergy_core::clock::Time;
+use anergy_simulation::balance::{Balances, summary};
+use anergy_simulation::build::build;
+use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
+use std::path::Path;
+
+/// Water that goes round beside the house, and a cold sunny day in February.
+const AROUND: &str = r#"format = 1
+[run]
+until = "24h"
+step = "60s"
+initial_degc = 45
+start = "2023-02-14T23:00:00Z"
+[weather]
+kind = "synthetic"
+seed = 5
+latitude_deg = 48.1
+longitude_deg = 11.6
+[[site]]
+id = "h"
+[[edge]]
+id = "pump"
+kind = "pump"
+from = "h.cold"
+to = "h.hot"
+head_max_bar = 0.4
+free_flow_l_min = 55
+[[edge]]
+id = "pipe"
+kind = "pipe"
+from = "h.hot"
+to = "h.cold"
+length_m = 100
+inner_diameter_mm = 22
+[pressure_reference]
+node = "h.cold"
+"#;
+
+/// Boiler and solar collector, storage, radiators behind a mixing station, fresh-water station, roof with battery.
+const HOUSE: &str = r#"
+[[unit]]
+site = "h"
+name = "boiler"
+kind = "condensing_boiler"
+flow_control = "constant_supply"
+supply_set_degc = 65
+[[unit]]
+site = "h"
+name = "storage"
+kind = "storage"
+volume_l = 785
+height_m = 1.755
+ua_w_k = 7
+initial_bottom_degc = 30
+initial_top_degc = 60
+ports = { boiler = { inlet_m = 1.6, outlet_m = 0.26 }, heating = { inlet_m = 0.3, outlet_m = 1.1 }, tap = { inlet_m = 0.05, outlet_m = 1.7 } }
+coils = { solar = { area_m2 = 2.5, volume_l = 16.5, inlet_layer = 5, outlet_layer = 1 } }
+rod = { power_kw = 6, layer = 7 }
+[[unit]]
+site = "h"
+name = "mixer"
+kind = "mixing_station"
+[[unit]]
+site = "h"
+name = "building"
+kind = "building"
+heating = true
+cooling = false
+emitter = "radiator"
+heating_w_m2 = 40
+[[unit]]
+site = "h"
+name = "water"
+kind = "domestic_hot_water"
+daily_l = 300
+circulation_loss_w = 150
+[[unit]]
+site = "h"
+name = "collector"
+kind = "solar_collector"
+[[unit]]
+site = "h"
+name = "roof"
+kind = "pv"
+[[unit]]
+site = "h"
+name = "battery"
+kind = "battery"
+[[unit]]
+site = "h"
+name = "household"
+kind = "household"
+[[unit]]
+site = "h"
+name = "car"
+kind = "electric_vehicle"
+[[unit]]
+site = "h"
+name = "grid"
+kind = "grid_connection"
+
+[[circuit]]
+site = "h"
+id = "charging"
+through = ["boiler", "storage.boiler"]
+[[circuit]]
+site = "h"
+id = "mixing"
+through = ["mixer.storage", "storage.heating"]
+[[circuit]]
+site = "h"
+id = "heating"
+through = ["mixer.heating", "building"]
+[[circuit]]
+site = "h"
+id = "tapping"
+through = ["water", "storage.tap"]
+[[circuit]]
+site = "h"
+id = "solar"
+through = ["collector", "storage.solar"]
+
+[[controller]]
+id = "h.boiler_control"
+kind = "two_sensors"
+measures_on = "h.storage.t_8_k"
+measures_off = "h.storage.t_3_k"
+acts_on = "h.boiler.modulation"
+on_below_degc = 60
+off_above_degc = 55
+on_output = 0.8
+"#;
+
+fn simulation(text: &str) -> Simulation {
+    let model = Model::from_toml(text, Path::new("."))
+        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
+    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(text)));
+    Simulation::new(plan).unwrap()
+}
+
+fn advance(simulation: &mut Simulation, seconds: f64, step_s: f64) {
+    let end = simulation.time() + Time::from_s(seconds).unwrap();
+    simulation.advance_to(end, Time::from_s(step_s).unwrap()).unwrap();
+}
+
+fn get(simulation: &Simulation, channel: &str) -> f64 {
+    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
+}
+
+const UNITS: [&str; 9] = [
+    "boiler",
+    "storage",
+    "mixer",
+    "building",
+    "water",
+    "collector",
+    "roof",
+    "battery",
+    "household",
+];
+
+#[test]
+fn a_winter_day_closes_and_is_comfortable() {
+    let mut simulation = simulation(&(AROUND.to_owned() + HOUSE));
+    let (mut grid_j, mut sum_j, mut coldest_k) = (0.0, 0.0, f64::MAX);
+    for _ in 0..24 * 60 {
+        advance(&mut simulation, 60.0, 60.0);
+        // What the connection sees is what the units and pumps of the same step draw.
+        let electric =
+            ["boiler", "mixer", "water", "collector", "roof", "battery", "household", "car"]
+                .map(|unit| get(&simulation, &format!("h.{unit}.electric_w")));
+        sum_j += 60.0 * (electric.iter().sum::<f64>() + get(&simulation, "h.storage.rod_w"));
+        grid_j += 60.0 * get(&simulation, "h.grid.grid_w");
+        coldest_k = get(&simulation, "h.building.t_room_k").min(coldest_k);
+    }
+    assert!((grid_j - sum_j).abs() < 1e-6 * sum_j.abs(), "{grid_j} {sum_j}");
+    let balances = Balances::of(&simulation);
+    assert!(balances.units_error() < 1e-9, "{balances:?}");
+    assert!(balances.heat_error() < 1e-6);
+    // Heat of the boiler within its efficiency; one or a few starts.
+    let (heat, fuel) = (get(&simulation, "h.boiler.heat_j"), get(&simulation, "h.boiler.fuel_j"));
+    assert!((0.85..1.06).contains(&(heat / fuel)), "{heat} {fuel}");
+    assert!(heat > 30.0 * 3.6e6, "{}", heat / 3.6e6);
+    assert!(get(&simulation, "h.boiler.starts") < 20.0);
+    // Warm rooms and warm water.
+    assert!(coldest_k > 292.15, "{coldest_k}");
+    assert_eq!(get(&simulation, "h.water.dc_water_k_m3"), 0.0);
+    let drawn_m3 = get(&simulation, "h.water.drawn_m3");
+    assert!((0.1..0.7).contains(&drawn_m3), "{drawn_m3}");
+    assert!(get(&simulation, "h.collector.heat_j") > 0.0);
+    // The people of the household are those of the building.
+    let people_w = 6.0 * 110.0 * get(&simulation, "h.household.presence");
+    assert!((get(&simulation, "h.building.internal_w") - people_w).abs() < 1e-9);
+    // The battery takes the sun: nothing is drawn while it can give, nothing fed in while it can take.
+    assert!(get(&simulation, "h.grid.self_consumption") > 0.3);
+    assert!(get(&simulation, "h.battery.full_cycles") > 0.1);
+    let kpis = summary(&simulation, false)["kpis"].clone();
+    let of = |unit: &str, name: &str| kpis["units"][format!("h.{unit}")][name].as_f64();
+    assert!((of("boiler", "fuel_kwh").unwrap() - fuel / 3.6e6).abs() < 1e-9);
+    assert!(of("boiler", "seasonal_cop").is_none() && of("grid", "imported_kwh").is_some());
+    for unit in UNITS {
+        assert!(kpis["units"].get(format!("h.{unit}")).is_some(), "{unit}");
+    }
+}
+
+#[test]
+fn steps_of_a_minute_and_of_a_quarter_of_an_hour_agree() {
+    let energies = |step_s: f64| {
+        let mut simulation = simulation(&(AROUND.to_owned() + HOUSE));
+        advance(&mut simulation, 86_400.0, step_s);
+        assert!(Balances::of(&simulation).units_error() < 1e-9);
+        let of = |name: &str| get(&simulation, &format!("h.{name}"));
+        // What the taps did not get is counted as discomfort: 4.18 MJ/(m3 K).
+        let water_j = of("water.taken_j") + 4.18e6 * of("water.dc_water_k_m3");
+        [water_j, of("boiler.heat_j"), of("household.used_j"), of("roof.generated_j")]
+    };
+    let (fine, coarse) = (energies(60.0), energies(900.0));
+    for (i, tolerance) in [0.002, 0.15, 1e-9, 0.02].into_iter().enumerate() {
+        let apart = (fine[i] - coarse[i]).abs();
+        assert!(apart <= tolerance * fine[i], "{i}: {} {}", fine[i], coarse[i]);
+    }
+}
+
+#[test]
+fn a_house_goes_on_from_a_snapshot_and_allocates_nothing() {
+    let mut simulation = simulation(&(AROUND.to_owned() + HOUSE));
+    advance(&mut simulation, 6.0 * 3600.0, 60.0);
+    let here = simulation.snapshot();
+    let bits = |simulation: &mut Simulation| {
+        advance(simulation, 4.0 * 3600.0, 60.0);
+        ["h.storage.t_8_k", "h.boiler.fuel_j", "h.water.drawn_m3", "h.grid.import_j"]
+            .map(|channel| get(simulation, channel).to_bits())
+    };
+    let first = bits(&mut simulation);
+    simulation.restore(&here).unwrap();
+    assert_eq!(first, bits(&mut simulation));
+    simulation.take_events();
+    // Over a midnight: the draws and the weights of the next day are made in place.
+    let found = measure(|| advance(&mut simulation, 15.0 * 3600.0, 60.0));
+    let events = simulation.take_events().count();
+    assert!(events > 0 || (found.count_total, found.bytes_total) == (0, 0), "{found:?}");
+}
