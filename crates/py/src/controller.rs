@@ -32,7 +32,10 @@ impl Raised {
     pub fn take(&self, py: Python<'_>, error: &RunError) -> Option<PyErr> {
         let raised = self.0.lock().ok()?.take()?;
         if let RunError::Control { time, controller, .. } = error {
-            let note = format!("raised by the controller \"{controller}\" at {time}");
+            let mut note = format!("raised by the controller \"{controller}\" at {time}");
+            if raised.value(py).to_string() == "Already mutably borrowed" {
+                note += "; within a step it cannot ask its simulation: what it needs belongs into `measures`";
+            }
             // From Python 3.11 on.
             let _ = raised.value(py).call_method1("add_note", (note,));
         }

@@ -141,6 +141,15 @@ def test_one_value(model, value, expected):
     assert sim.get(COMMAND) == expected
 
 
+def test_set_points_and_boundaries_are_signals_too(controlled):
+    """A supervisory layer: it moves the set point of a controller of the model, and the ground."""
+    above = Fixed([0.02, 278.15], acts_on=["flow.set_point", "ground.temperature_k"], interval_s=60.0)
+    sim = controlled.simulation(step_s=1.0, controllers=[above])
+    sim.advance(600)
+    assert sim.get(FLOW) == pytest.approx(0.02, rel=1e-3)
+    assert sim.get("ground.temperature_k") == 278.15
+
+
 def test_limits_and_the_array_of_measured_values(model):
     seen = []
 
@@ -231,6 +240,20 @@ def test_exceptions_keep_their_traceback_and_the_rows(model):
     fails.look = lambda time_s: 0.8
     sim.step()
     assert sim.time_s == 50 and sim.get(COMMAND) == 0.8
+
+
+def test_the_simulation_cannot_be_asked_within_a_step(model):
+    class Asks(Fixed):
+        def update(self, time_s, measured):
+            return self.sim.get(FLOW)
+
+    asks = Asks(1)
+    asks.sim = model.simulation(controllers=[asks])
+    with pytest.raises(RuntimeError) as raised:
+        asks.sim.step()
+    if hasattr(raised.value, "add_note"):
+        assert "what it needs belongs into `measures`" in raised.value.__notes__[0]
+    del asks.sim
 
 
 def test_ctrl_c_in_update(model):

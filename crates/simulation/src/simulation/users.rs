@@ -30,6 +30,56 @@ impl AddedController {
 impl Simulation {
     /// Adds a controller that reads channels and writes signals from its first update on.
     ///
+    /// ```
+    /// use anergy_control::controller::{ControlError, Timing};
+    /// use anergy_control::user_controller::UserController;
+    /// # use anergy_core::clock::Time;
+    /// # use anergy_simulation::{build::build, model::Model, simulation::Simulation};
+    /// # let text = r#"
+    /// # format = 1
+    /// # [[site]]
+    /// # id = "plant"
+    /// # lines = ["supply", "return"]
+    /// # [[edge]]
+    /// # id = "pump"
+    /// # kind = "pump"
+    /// # from = "plant.return"
+    /// # to = "plant.supply"
+    /// # head_max_hpa = 402.21
+    /// # free_flow_l_min = 55.33
+    /// # [[edge]]
+    /// # id = "load"
+    /// # kind = "resistance"
+    /// # from = "plant.supply"
+    /// # to = "plant.return"
+    /// # dp_nominal_hpa = 100.0
+    /// # m_flow_nominal_kg_min = 10.0
+    /// # [pressure_reference]
+    /// # node = "plant.return"
+    /// # "#;
+    /// # let model = Model::from_toml(text, std::path::Path::new(".")).unwrap();
+    /// /// Integrates towards 0.2 kg/s.
+    /// struct Integral;
+    ///
+    /// impl UserController for Integral {
+    ///     fn timing(&self) -> Timing {
+    ///         Timing { interval_s: 5.0, offset_s: 0.0 }
+    ///     }
+    ///
+    ///     fn update(&mut self, _time_s: f64, measured: &[f64], outputs: &mut [f64]) -> Result<(), ControlError> {
+    ///         outputs[0] = (outputs[0] + (0.2 - measured[0])).clamp(0.0, 1.0);
+    ///         Ok(())
+    ///     }
+    /// }
+    ///
+    /// let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+    /// let flow = simulation.channel("pump.m_flow_kg_s").unwrap();
+    /// let speed = simulation.signal("pump.speed").unwrap();
+    /// simulation.add_controller("integral", Box::new(Integral), &[flow], &[speed]).unwrap();
+    /// simulation.advance_to(Time::from_s(600.0).unwrap(), Time::from_s(1.0).unwrap()).unwrap();
+    /// assert!((simulation.get(flow) - 0.2).abs() < 1e-6);
+    /// ```
+    ///
     /// # Errors
     /// [`RunError::Control`] for an interval that is not positive, an offset below zero, no signal, a signal
     /// that another added controller acts on, and what the controller itself says at its start.
