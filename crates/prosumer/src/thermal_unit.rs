@@ -213,7 +213,7 @@ const LARGEST_SCALE: f64 = 3.0;
 
 /// The remark on a unit that was scaled further than its data carry.
 pub(crate) fn scaled_far(factor: f64) -> Vec<String> {
-    let far = factor > LARGEST_SCALE || factor < 1.0 / LARGEST_SCALE;
+    let far = !(1.0 / LARGEST_SCALE..=LARGEST_SCALE).contains(&factor);
     let remark = || {
         format!(
             "its size is {factor:.3} times that of the unit whose data it has: efficiency, start and stop \

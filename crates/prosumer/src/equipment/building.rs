@@ -201,8 +201,8 @@ impl ThermalUnit for Building {
         vec![
             input("room_set_k", "k", p.room_set_k, K, None),
             input("cooling_set_k", "k", p.cooling_set_k, K, None),
-            input("presence", "", 1.0, SHARE, None),
-            input("appliances_w", "w", 0.0, POSITIVE, None),
+            input("presence", "", 1.0, SHARE, Some("site.presence")),
+            input("appliances_w", "w", 0.0, POSITIVE, Some("site.appliances_w")),
             input("cellar_gain_w", "w", 0.0, ANY, None),
             input("heating_enabled", "", 1.0, SHARE, None),
             input("cooling_enabled", "", 1.0, SHARE, None),
