@@ -1,7 +1,7 @@
 //! Three ways to heat the water of the taps (SC-17): a fresh-water station and a coil at a heating storage, and a tank of
 //! its own that the storage charges, with the same draws and the same volume.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
@@ -169,6 +169,15 @@ fn run(variant: char) -> (f64, f64, f64, f64, f64) {
 #[test]
 fn three_installations_with_the_same_draws() {
     let [a, b, c] = ['a', 'b', 'c'].map(run);
+    println!("| installation | mean return degC | heat kWh | discomfort K l |");
+    println!("|---|---|---|---|");
+    for (name, (back_degc, heat_j, _, discomfort_k_m3, _)) in [("a", a), ("b", b), ("c", c)] {
+        println!(
+            "| {name} | {back_degc:.1} | {:.1} | {:.1} |",
+            heat_j / 3.6e6,
+            1e3 * discomfort_k_m3
+        );
+    }
     for (name, installation) in [("a", a), ("b", b), ("c", c)] {
         // The same water, all of it warm.
         assert!(

@@ -226,6 +226,14 @@ fn steps_of_a_minute_and_of_a_quarter_of_an_hour_agree() {
         [water_j, of("boiler.heat_j"), of("household.used_j"), of("roof.generated_j")]
     };
     let (fine, coarse) = (energies(60.0), energies(900.0));
+    // Steps across midnight draw the same water.
+    let drawn_m3 = |step_s: f64| {
+        let mut simulation = simulation(&(AROUND.to_owned() + HOUSE));
+        advance(&mut simulation, 120.0, 120.0);
+        advance(&mut simulation, 1.5 * 86_400.0, step_s);
+        get(&simulation, "h.water.drawn_m3")
+    };
+    assert!((drawn_m3(60.0) - drawn_m3(600.0)).abs() < 1e-12);
     for (i, tolerance) in [0.002, 0.15, 1e-9, 0.02].into_iter().enumerate() {
         let apart = (fine[i] - coarse[i]).abs();
         assert!(apart <= tolerance * fine[i], "{i}: {} {}", fine[i], coarse[i]);
@@ -339,8 +347,10 @@ fn the_house_of_the_laboratory_heats_for_itself() {
     advance(&mut simulation, 2.0 * 86_400.0, 60.0);
     assert!(Balances::of(&simulation).units_error() < 1e-9);
     let of = |name: &str| get(&simulation, &format!("sf1.{name}"));
-    // The engine runs through, the boiler helps.
-    assert_eq!(of("chp.starts"), 1.0);
+    // The engine hardly ever stops, the boiler helps.
+    assert!(
+        (1.0..=3.0).contains(&of("chp.starts")) && of("chp.operating_s") > 0.8 * 2.0 * 86_400.0
+    );
     assert!(of("chp.heat_j") > of("boiler.heat_j") && of("boiler.starts") > 1.0);
     let efficiency = (of("chp.heat_j") + of("chp.generated_j")) / of("chp.fuel_j");
     assert!((0.75..0.95).contains(&efficiency), "{efficiency}");

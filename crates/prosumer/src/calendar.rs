@@ -46,7 +46,12 @@ pub fn weekend(day: i64) -> bool {
 
 /// `cos(2 pi (d - d_0)/year)` of a day, with the day of the year of the maximum.
 pub fn season(day: i64, maximum_day: f64) -> f64 {
-    (TAU * ((day as f64) - maximum_day) / YEAR_DAYS).cos()
+    season_rad(day, maximum_day).cos()
+}
+
+/// Where a day stands in the year, from the day of the year `maximum_day` on, rad.
+pub fn season_rad(day: i64, maximum_day: f64) -> f64 {
+    TAU * ((day as f64) - maximum_day) / YEAR_DAYS
 }
 
 /// A number above 0 and below 1 for a seed, a day and an index.

@@ -1,18 +1,19 @@
 //! Draws of hot water: a reproducible random sequence with the statistics of DHWcalc.
 //!
 //! **Equation** four kinds of draws (short, medium, bath, shower) of a flow, a duration and a share of the daily volume.
-//! A day has `V_d = V (5 + 2 w)^-1 7 {1, w} (1 + a cos(2 pi (d - d_0)/365))` with the factor `w` of weekends. The
-//! number of draws of a kind follows its share, `n = share V_d/(flow duration)`: what is left over of a day is carried
-//! on, with a chance of half a draw. They begin at times spread by the daily course; the flow is normally distributed,
-//! at least `LEAST_L_MIN`, and `n` counts with its mean.
+//! A day has `V_d = 7 V {1, w}/(5 + 2 w) (1 + a cos(2 pi (d - d_0)/365))` with the factor `w` of weekends. A kind has as
+//! many draws as its share needs, `n = share V_d/(flow duration)` on average: between two days `floor(N(d) + x_d)` more,
+//! with the sum `N` of all days before and a random number `x_d` below 1, which for kinds rarer than once a day stays the
+//! same. They begin at times spread by the daily course; the flow is normally distributed, at least `LEAST_L_MIN`, and `n`
+//! counts with its mean.
 //!
 //! **Assumptions** draws do not depend on each other and may overlap; a draw ends before midnight. **Validity**
-//! statistics of households. **Numerics** a day's draws are made once from the seed and the date and kept in the state,
-//! by their begin; means over a step are exact.
+//! statistics of households. **Numerics** a day's draws follow from the seed and the date alone (the sum `N` has a
+//! closed form for each day of the week) and are kept in the state by their begin; means over a step are exact.
 //!
 //! **Sources** `jordan2001`; flows, durations, shares and courses as in the profiles of the laboratory, `zinsmeister2023`.
 
-use crate::calendar::{DAY_S, normal, season, uniform, weekend};
+use crate::calendar::{DAY_S, normal, season_rad, uniform, weekend};
 
 /// A flow of less is drawn as this, l/min.
 const LEAST_L_MIN: f64 = 0.5;
@@ -43,6 +44,8 @@ const WEEKEND: [(f64, f64); 8] = [
     (24.0, 3.8 / 8.0),
     (24.0, 0.0),
 ];
+/// Kinds with fewer draws a day are spread evenly over the days: with weekends and seasons at least one must remain.
+const LEAST_A_DAY: f64 = 2.0;
 /// Day of the year with the largest volume.
 const LARGEST_DAY: f64 = 45.0;
 const M3_PER_L: f64 = 1e-3;
@@ -75,12 +78,11 @@ pub struct Drawn {
 
 /// A draw in the state: begin and end within the day, s, flow, m3/s, kind.
 const DRAW: usize = 4;
-/// Places in front of the draws: the day, their number, the first that has not ended, what is left of each kind.
+/// Places in front of the draws: the day, their number, the first that has not ended.
 const DAY: usize = 0;
 const COUNT: usize = 1;
 const NEXT: usize = 2;
-const LEFT: usize = 3;
-const FIRST: usize = LEFT + KINDS.len();
+const FIRST: usize = 3;
 
 /// Mean of a normally distributed number that is at least `least`.
 fn mean_at_least(mean: f64, deviation: f64, least: f64) -> f64 {
@@ -117,9 +119,6 @@ impl Draws {
     pub fn initial(&self, state: &mut [f64]) {
         state.fill(0.0);
         state[DAY] = f64::MIN;
-        for kind in 0..KINDS.len() {
-            state[LEFT + kind] = uniform(self.seed, -1, kind as u64) - 0.5;
-        }
     }
 
     /// Number of draws of a kind in a volume.
@@ -132,21 +131,43 @@ impl Draws {
     pub fn day_m3(&self, day: i64) -> f64 {
         let w = self.weekend_factor;
         let of_day = if weekend(day) { w } else { 1.0 };
-        let of_season = 1.0 + self.season_amplitude * season(day, LARGEST_DAY);
+        let of_season = 1.0 + self.season_amplitude * season_rad(day, LARGEST_DAY).cos();
         self.daily_m3 * 7.0 * of_day / (5.0 + 2.0 * w) * of_season
+    }
+
+    /// Mean volume of all days from 1970 on before a day, m3.
+    fn before_m3(&self, day: i64) -> f64 {
+        let w = self.weekend_factor;
+        let mut sum = 0.0;
+        for weekday in 0..7 {
+            // The days 7 j + weekday, j = 0 to n - 1, and the sum of their cosines.
+            let n = (day - weekday + 6).div_euclid(7) as f64;
+            let week_rad = 7.0 * season_rad(1, 0.0);
+            let middle_rad = season_rad(weekday, LARGEST_DAY) + 0.5 * (n - 1.0) * week_rad;
+            let cosines = middle_rad.cos() * (0.5 * n * week_rad).sin() / (0.5 * week_rad).sin();
+            let of_day = if weekend(weekday) { w } else { 1.0 };
+            sum += of_day * (n + self.season_amplitude * cosines);
+        }
+        self.daily_m3 * 7.0 / (5.0 + 2.0 * w) * sum
+    }
+
+    /// Draws of a kind before a day.
+    fn before(&self, kind: usize, day: i64) -> f64 {
+        let base = kind as u64 * PER_KIND;
+        // A number that changes every day could take a draw away where there is less than one a day.
+        let rare = self.number(kind, self.daily_m3) < LEAST_A_DAY;
+        let chance = uniform(self.seed, if rare { 0 } else { day }, base);
+        (self.number(kind, self.before_m3(day)) + chance).floor()
     }
 
     /// Makes the draws of a day.
     fn make(&self, day: i64, state: &mut [f64]) {
-        let volume_m3 = self.day_m3(day);
         let (head, draws) = state.split_at_mut(FIRST);
         let (draws, _) = draws.as_chunks_mut::<DRAW>();
         let mut count = 0;
         for (kind, (flow, deviation, duration_s, _)) in KINDS.into_iter().enumerate() {
             let base = kind as u64 * PER_KIND;
-            let left = head[LEFT + kind] + self.number(kind, volume_m3);
-            let number = (left + uniform(self.seed, day, base) - 0.5).round().max(0.0);
-            head[LEFT + kind] = left - number;
+            let number = self.before(kind, day + 1) - self.before(kind, day);
             for i in 0..number as u64 {
                 let Some(draw) = draws.get_mut(count) else { break };
                 let index = base + 10 + 2 * i;
@@ -250,7 +271,7 @@ mod tests {
             // Winter (three months round the largest day) over summer: 1 +- 0.09.
             let season = |d: i64, of: i64| {
                 let apart = (d - of).rem_euclid(365);
-                apart < 45 || apart > 320
+                !(45..=320).contains(&apart)
             };
             let of_year = |i: usize| (MONDAY + i as i64) - (365.2425 * 53.0) as i64;
             let winter = volume(&|i| season(of_year(i) % 365, 45));
@@ -298,6 +319,23 @@ mod tests {
             }
         }
         assert_ne!(days(&Draws::new(6, 0.3, 1.2, 0.1), 1), days(&draws, 1));
+    }
+
+    #[test]
+    fn a_day_does_not_depend_on_what_was_asked_before() {
+        let draws = Draws::new(5, 0.3, 1.2, 0.1);
+        let whole = days(&draws, 3);
+        let mut state = vec![0.0; draws.state_len()];
+        draws.initial(&mut state);
+        // Back and forth over midnight, as steps that are tried and repeated.
+        for i in [2, 0, 1, 0, 2, 1] {
+            let again = draws.drawn(MONDAY + i, 0.0, DAY_S, &mut state);
+            assert_eq!(again, whole[i as usize], "day {i}");
+        }
+        // The closed form of the sum.
+        let sum: f64 = (MONDAY..MONDAY + 500).map(|day| draws.day_m3(day)).sum();
+        let closed = draws.before_m3(MONDAY + 500) - draws.before_m3(MONDAY);
+        assert!((sum - closed).abs() < 1e-8, "{sum} {closed}");
     }
 
     #[test]

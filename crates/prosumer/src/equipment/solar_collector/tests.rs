@@ -12,11 +12,11 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(params: SolarCollectorParams, back_degc: f64) -> Self {
+    fn new(params: &SolarCollectorParams, back_degc: f64) -> Self {
         let params = SolarCollectorParams {
             albedo: 0.0,
             sky: crate::equipment::pv::SkyModel::Isotropic,
-            ..params
+            ..params.clone()
         };
         let unit = params.build(&Medium::default()).unwrap();
         let back_k = back_degc + 273.15;
@@ -70,7 +70,7 @@ fn points_of_the_efficiency_curve() {
     ] {
         for (back_degc, irradiance) in [(20.0, 1000.0), (40.0, 800.0), (60.0, 1000.0)] {
             let params = SolarCollectorParams { collector, ..SolarCollectorParams::default() };
-            let mut bench = Bench::new(params, back_degc);
+            let mut bench = Bench::new(&params, back_degc);
             // Hot enough that the pump starts.
             bench.state[..CELLS].fill(back_degc + 10.0 + 273.15);
             (0..200).for_each(|_| bench.step(60.0, irradiance));
@@ -88,7 +88,7 @@ fn points_of_the_efficiency_curve() {
 #[test]
 fn it_stagnates_where_the_storage_is_full_and_rests_until_it_is_cooler() {
     for dt_s in [10.0, 60.0, 900.0] {
-        let mut bench = Bench::new(SolarCollectorParams::default(), 86.0);
+        let mut bench = Bench::new(&SolarCollectorParams::default(), 86.0);
         (0..(14_400.0 / dt_s) as usize).for_each(|_| bench.step(dt_s, 1000.0));
         assert!((bench.out("t_collector_k") - 293.15 - 140.2).abs() < 0.5, "{:?}", bench.out);
         assert!(bench.out("pump") == 0.0 && bench.out("stagnates") == 1.0);
@@ -103,7 +103,7 @@ fn it_stagnates_where_the_storage_is_full_and_rests_until_it_is_cooler() {
 
 #[test]
 fn the_pump_by_differences() {
-    let mut bench = Bench::new(SolarCollectorParams::default(), 30.0);
+    let mut bench = Bench::new(&SolarCollectorParams::default(), 30.0);
     let set = |bench: &mut Bench, above_k: f64| bench.state[..CELLS].fill(303.15 + above_k);
     for (above_k, share) in [(2.5, 0.0), (3.5, 0.125), (5.0, 0.5), (7.0, 1.0), (20.0, 1.0)] {
         set(&mut bench, above_k);
@@ -128,7 +128,7 @@ fn the_supply_is_held() {
         ..SolarCollectorParams::default()
     };
     for (back_degc, set_degc) in [(30.0, 60.0), (62.0, 80.0)] {
-        let mut bench = Bench::new(params.clone(), back_degc);
+        let mut bench = Bench::new(&params, back_degc);
         bench.state[..CELLS].fill(set_degc + 273.15);
         (0..300).for_each(|_| bench.step(60.0, 900.0));
         let supply_degc = bench.port.t_out_k - 273.15;
