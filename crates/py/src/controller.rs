@@ -11,6 +11,7 @@ use anergy_simulation::error::RunError;
 use anergy_simulation::simulation::Simulation;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyFloat, PyList, PyString};
 use std::sync::{Arc, Mutex};
@@ -43,20 +44,27 @@ impl Raised {
     }
 }
 
+/// What a controller is in Python; its simulation and the simulation's owner share it, so that the collector
+/// of cycles sees every reference once.
+struct Parts {
+    object: Py<PyAny>,
+    update: Py<PyAny>,
+    /// Filled again for each update.
+    measured: Py<PyArray1<f64>>,
+}
+
 /// The controllers of a simulation, and what one of them raised.
 #[derive(Default)]
 pub struct Controllers {
-    attached: Vec<(String, Py<PyAny>)>,
+    attached: Vec<(String, Arc<Parts>)>,
     /// What was raised in a step.
     pub raised: Raised,
 }
 
-/// A Python object as a controller, with buffers that are used again.
+/// A Python object as a controller.
 struct PyController {
     name: String,
-    object: Py<PyAny>,
-    update: Py<PyAny>,
-    measured: Py<PyArray1<f64>>,
+    parts: Arc<Parts>,
     timing: Timing,
     raised: Raised,
 }
@@ -69,14 +77,14 @@ impl PyController {
         measured: &[f64],
         outputs: &mut [f64],
     ) -> PyResult<()> {
-        let buffer = self.measured.bind(py);
+        let buffer = self.parts.measured.bind(py);
         {
             let mut values = buffer.try_readwrite().map_err(|_| {
                 self.wrong("must leave the array of measured values writeable".into())
             })?;
             values.as_slice_mut()?.copy_from_slice(measured);
         }
-        let given = self.update.bind(py).call1((time_s, buffer))?;
+        let given = self.parts.update.bind(py).call1((time_s, buffer))?;
         self.read(&given, outputs)
     }
 
@@ -124,7 +132,7 @@ impl UserController for PyController {
 
     fn start(&mut self) -> Result<(), ControlError> {
         Python::attach(|py| {
-            let started = self.object.bind(py).call_method0("start");
+            let started = self.parts.object.bind(py).call_method0("start");
             started.map(drop).map_err(|error| self.raised.keep(error))
         })
     }
@@ -214,14 +222,14 @@ impl Controllers {
         }
         let seconds = |attribute: &str| object.getattr(attribute)?.extract::<f64>();
         let timing = Timing { interval_s: seconds("interval_s")?, offset_s: seconds("offset_s")? };
-        let controller = PyController {
-            name: name.clone(),
+        let parts = Arc::new(Parts {
             object: object.clone().unbind(),
             update: object.getattr("update")?.unbind(),
             measured: PyArray1::zeros(py, channels.len(), false).unbind(),
-            timing,
-            raised: self.raised.clone(),
-        };
+        });
+        let raised = self.raised.clone();
+        let controller =
+            PyController { name: name.clone(), parts: Arc::clone(&parts), timing, raised };
         let added = simulation.add_controller(&name, Box::new(controller), &channels, &signals);
         added.map_err(|error| match (self.raised.take(py, &error), &error) {
             (Some(raised), _) => raised,
@@ -231,7 +239,17 @@ impl Controllers {
             }
             (None, _) => PyValueError::new_err(error.to_string()),
         })?;
-        self.attached.push((name, object.clone().unbind()));
+        self.attached.push((name, parts));
+        Ok(())
+    }
+
+    /// Shows the collector of cycles what they refer to.
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        for (_, parts) in &self.attached {
+            visit.call(&parts.object)?;
+            visit.call(&parts.update)?;
+            visit.call(&parts.measured)?;
+        }
         Ok(())
     }
 
@@ -241,8 +259,8 @@ impl Controllers {
             return Ok(None);
         }
         let states = PyList::empty(py);
-        for (name, object) in &self.attached {
-            let object = object.bind(py);
+        for (name, parts) in &self.attached {
+            let object = parts.object.bind(py);
             for method in ["get_state", "set_state"] {
                 if !object.hasattr(method)? {
                     return Err(errors::SnapshotError::new_err(format!(
@@ -260,8 +278,8 @@ impl Controllers {
     pub fn restore(&self, py: Python<'_>, state: Option<&[u8]>) -> PyResult<()> {
         let Some(state) = state else { return Ok(()) };
         let states = py.import("pickle")?.call_method1("loads", (PyBytes::new(py, state),))?;
-        for ((_, object), state) in self.attached.iter().zip(states.try_iter()?) {
-            object.bind(py).call_method1("set_state", (state?,))?;
+        for ((_, parts), state) in self.attached.iter().zip(states.try_iter()?) {
+            parts.object.bind(py).call_method1("set_state", (state?,))?;
         }
         Ok(())
     }

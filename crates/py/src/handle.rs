@@ -8,6 +8,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A channel, or a signal by the channel of its command.
@@ -77,9 +78,22 @@ pub struct Handles {
 impl Handles {
     /// Looks names up.
     pub fn find(simulation: &Simulation, names: Vec<String>) -> PyResult<Self> {
-        let find = |name| Handle::find(simulation, name);
+        let plan = simulation.plan();
+        let channels = plan.channels().iter().enumerate().rev();
+        // Many names of many channels: each is looked up in no time.
+        let known: HashMap<&str, usize> =
+            channels.map(|(i, channel)| (channel.name.as_str(), i)).collect();
+        let find = |name: String| match known.get(name.as_str()) {
+            Some(channel) => Ok(Handle {
+                channel_name: name.clone(),
+                channel: ChannelId::from_index(*channel),
+                signal: plan.signals().find(&name),
+                name,
+            }),
+            None => Handle::find(simulation, name),
+        };
         let handles = names.into_iter().map(find).collect::<PyResult<_>>()?;
-        Ok(Self { handles, plan: simulation.plan().clone() })
+        Ok(Self { handles, plan: plan.clone() })
     }
 
     /// Writes the present values into a slice of the same length.

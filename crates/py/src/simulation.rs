@@ -16,6 +16,7 @@ use anergy_simulation::plan::Plan;
 use anergy_simulation::simulation;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyList};
 use std::sync::Arc;
@@ -354,6 +355,11 @@ impl Simulation {
         let done = self.simulation.restore(&snapshot.state);
         done.map_err(|error| self.failure(py, &error))?;
         self.controllers.restore(py, snapshot.controllers.as_deref())
+    }
+
+    /// A controller may hold its simulation: such a cycle is collected.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.controllers.traverse(&visit)
     }
 
     fn __repr__(&self) -> String {

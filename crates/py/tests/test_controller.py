@@ -323,6 +323,17 @@ def test_nothing_is_kept_alive(model):
     assert there() is None
 
 
+def test_cycles_are_collected(model):
+    """A controller that holds its simulation, which holds the controller."""
+    pi = Pi()
+    pi.sim = model.simulation(controllers=[pi])
+    pi.sim.step()
+    there = weakref.ref(pi)
+    del pi
+    gc.collect()
+    assert there() is None
+
+
 def test_many_names_at_once(model):
     sim = model.simulation(step_s=1.0)
     speeds, flows = sim.handles([SPEED, OTHER]), sim.handles([FLOW, OTHER, "sf1.hot.t_k"])
