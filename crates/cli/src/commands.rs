@@ -4,6 +4,7 @@ pub mod check;
 pub mod demo;
 pub mod export;
 pub mod import;
+pub mod measured;
 pub mod report;
 pub mod run;
 pub mod schema;

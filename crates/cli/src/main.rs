@@ -84,7 +84,7 @@ enum Command {
     },
     /// Print the JSON Schema of the model file
     Schema,
-    /// Read the network of another program into a model file
+    /// Read the network of another program into a model file, or measured series
     Import {
         #[command(subcommand)]
         format: ImportFormat,
@@ -129,6 +129,16 @@ enum ImportFormat {
         #[arg(long)]
         self_acting: bool,
     },
+    /// Measured series (CSV of a logger, or MCAP) as the file of a [[series]]: SI, sorted, gaps told
+    Measured {
+        /// Table (.csv) or recording (.mcap)
+        file: PathBuf,
+        /// The series (.csv)
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        #[command(flatten)]
+        options: commands::measured::MeasuredArguments,
+    },
     /// Points and lines of a geographic information system (GeoJSON, longitude and latitude)
     Geojson {
         /// Network (.geojson)
@@ -170,6 +180,9 @@ fn main() -> ExitCode {
         Command::Import { format } => match format {
             ImportFormat::Epanet { file, out, steady, self_acting } => {
                 commands::import::epanet(&file, &out, EpanetOptions { steady, self_acting })
+            }
+            ImportFormat::Measured { file, out, options } => {
+                commands::measured::measured(&file, &out, options)
             }
             ImportFormat::Geojson { file, out, options } => {
                 commands::import::geojson(&file, &out, options)

@@ -281,3 +281,48 @@ fn exported_tables_have_units_in_their_columns() {
         assert!(text(&full.stderr).contains("/dev/full"), "{}", text(&full.stderr));
     }
 }
+
+#[test]
+fn measured_series_drive_a_model() {
+    let dir = with_model(MODEL);
+    let table = "time;T feeder [degC];flow [l/min]\n31.01.2024 12:00;60,5;3\n31.01.2024 12:10;;4\n\
+                 31.01.2024 12:20;61,5\n31.01.2024 12:20;61,5;5\n";
+    std::fs::write(dir.path().join("logger.csv"), table).unwrap();
+    let import = |more: &[&str]| {
+        anergy(
+            &[&["import", "measured", "logger.csv", "--out", "series.csv"], more].concat(),
+            dir.path(),
+        )
+    };
+    let output = import(&["--utc-offset", "1h"]);
+    let shown = text(&output.stdout);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    for expected in [
+        "3 rows over 20m, every 10m",
+        "T_feeder_k",
+        "1 empty cells: the [[series]]",
+        "start = \"2024-01-31T11:00:00Z\"",
+        "logger.csv: line 4: 2 cells instead of 3",
+    ] {
+        assert!(shown.contains(expected), "{expected} is not in\n{shown}");
+    }
+    assert!(text(&import(&["--fill", "20min"]).stdout).contains("1 empty cells filled"));
+    let series = std::fs::read_to_string(dir.path().join("series.csv")).unwrap();
+    assert_eq!(
+        series,
+        "time,T_feeder_k,flow_m3_s\n2024-01-31T12:00:00Z,333.65,5e-5\n\
+         2024-01-31T12:10:00Z,334.15,6.666666666666667e-5\n2024-01-31T12:20:00Z,334.65,8.333333333333333e-5\n"
+    );
+    let model = MODEL.replace("[run]", "[run]\nstart = \"2024-01-31T12:00:00Z\"")
+        + "\n[[series]]\nfile = \"series.csv\"\ncolumn = \"flow_m3_s\"\nsignal = \"sf1.unit.v_flow_m3_s\"\n";
+    std::fs::write(dir.path().join("driven.toml"), model).unwrap();
+    let output = anergy(&["check", "driven.toml", "--signals"], dir.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let wrong = import(&["--time-column", "tiem"]);
+    assert_eq!(wrong.status.code(), Some(1));
+    assert!(
+        text(&wrong.stderr).contains("logger.csv: line 1: there is no column \"tiem\""),
+        "{}",
+        text(&wrong.stderr)
+    );
+}

@@ -71,7 +71,7 @@ fn rows(time_s: &[f64], every_s: Option<f64>) -> Vec<usize> {
     rows
 }
 
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if !value.is_finite() {
         return String::new();
     }
@@ -79,7 +79,7 @@ fn number(value: f64) -> String {
     text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
 }
 
-fn calendar(start_unix_ns: i64, time_s: f64) -> String {
+pub(crate) fn calendar(start_unix_ns: i64, time_s: f64) -> String {
     // The nearest nanosecond; beyond the calendar of 9999 years nothing is written.
     let ns = i128::from(start_unix_ns) + (time_s * 1e9).round() as i128;
     Timestamp::from_nanosecond(ns).map(|time| time.to_string()).unwrap_or_default()

@@ -1,5 +1,6 @@
 //! Recordings of runs as MCAP files: [`McapRecorder`] writes one while the run goes on,
-//! [`read`] brings it back as columns, [`write_csv`] makes a table of text of it.
+//! [`read`] brings it back as columns, [`write_csv`] makes a table of text of it; measured series
+//! of others in [`measured`].
 //!
 //! # The file
 //!
@@ -51,6 +52,7 @@ mod layout;
 mod map_message;
 mod mcap_reader;
 mod mcap_writer;
+pub mod measured;
 pub mod selection;
 #[cfg(test)]
 mod tests;
