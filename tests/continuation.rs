@@ -238,6 +238,16 @@ fn an_isolated_part_follows_the_whole() {
     let missing = model.isolate(&parts, &[cut("sf2.hot")]).unwrap_err().to_string();
     assert!(missing.contains("sf2.cold"), "{missing}");
     assert!(model.isolate(&["nothing"], &[]).is_err());
+    // What no water passes comes along with its site.
+    let dir = workspace().join("examples/three-houses");
+    let text = std::fs::read_to_string(dir.join("model.toml")).unwrap();
+    let load = |site| {
+        format!("\n[[unit]]\nsite = \"{site}\"\nname = \"lamp\"\nkind = \"electric_load\"\n")
+    };
+    let model = Model::from_toml(&(text + &load("sf1") + &load("sf2")), &dir).unwrap();
+    let part = model.isolate(&parts, &[cut("sf2.hot"), cut("sf2.cold")]).unwrap();
+    let units: Vec<&str> = part.units.iter().map(|unit| unit.id.as_str()).collect();
+    assert_eq!(units, ["sf1.unit", "sf1.lamp"]);
 }
 
 #[test]

@@ -290,6 +290,29 @@ integral_time_s = 60
     assert!(with[3] < without[3], "and saves gas");
 }
 
+#[test]
+fn houses_of_one_type_do_not_draw_at_the_same_time() {
+    let water = |site: &str| {
+        let source = "[[unit]]\nsite = \"SITE\"\nname = \"source\"\nkind = \"heat_source\"\nsupply_degc = 60\n\
+                      [[unit]]\nsite = \"SITE\"\nname = \"water\"\nkind = \"domestic_hot_water\"\ndaily_l = 300\n\
+                      [[circuit]]\nsite = \"SITE\"\nid = \"tap\"\nthrough = [\"water\", \"source\"]\n";
+        source.replace("SITE", site)
+    };
+    let street = "[[site]]\nid = \"h2\"\n[[edge]]\nid = \"on\"\nkind = \"pipe\"\nfrom = \"h.hot\"\nto = \"h2.hot\"\n\
+                  length_m = 10\ninner_diameter_mm = 22\n[[edge]]\nid = \"back\"\nkind = \"pipe\"\nfrom = \"h2.hot\"\n\
+                  to = \"h2.cold\"\nlength_m = 10\ninner_diameter_mm = 22\n[[edge]]\nid = \"home\"\nkind = \"pipe\"\n\
+                  from = \"h2.cold\"\nto = \"h.cold\"\nlength_m = 10\ninner_diameter_mm = 22\n";
+    let mut simulation = simulation(&(AROUND.to_owned() + street + &water("h") + &water("h2")));
+    let (mut apart_m3, mut sum_m3) = (0.0, 0.0);
+    for _ in 0..24 * 60 {
+        advance(&mut simulation, 60.0, 60.0);
+        let tap = |site: &str| 60.0 * get(&simulation, &format!("{site}.water.tap_m3_s"));
+        apart_m3 += (tap("h") - tap("h2")).abs();
+        sum_m3 += tap("h") + tap("h2");
+    }
+    assert!(apart_m3 > 0.7 * sum_m3, "{apart_m3} of {sum_m3} m3");
+}
+
 /// The events of a run.
 struct Events<'a>(&'a mut Vec<Event>);
 

@@ -58,6 +58,33 @@ anergy_core::registry! {
 pub const WITHOUT_PORTS: &[&str] =
     &["pv", "battery", "household", "electric_load", "electric_vehicle", "grid_connection"];
 
+impl EquipmentParams {
+    /// The parameters of a unit of this name where it draws random numbers: with its name in its seed, so that houses of
+    /// one type do not all do the same at the same time.
+    pub fn named(&self, name: &str) -> Option<Self> {
+        let mut own = match self {
+            Self::Household(_) | Self::ElectricVehicle(_) | Self::DomesticHotWater(_) => {
+                self.clone()
+            }
+            _ => return None,
+        };
+        match &mut own {
+            Self::Household(params) => params.seed = of_name(params.seed, name),
+            Self::ElectricVehicle(params) => params.seed = of_name(params.seed, name),
+            Self::DomesticHotWater(params) => params.seed = of_name(params.seed, name),
+            _ => {}
+        }
+        Some(own)
+    }
+}
+
+/// A seed with a name in it (FNV-1a).
+fn of_name(seed: u64, name: &str) -> u64 {
+    name.bytes().fold(seed ^ 0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
 /// A temperature at which the water of a unit is liquid, K.
 ///
 /// # Errors

@@ -4,6 +4,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{DriverSpec, Model, Place};
 use crate::model_file::{Interpolation, NodeEntryKind};
 use anergy_network::elements::ElementParams;
+use anergy_prosumer::equipment::WITHOUT_PORTS;
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::{HashMap, HashSet};
 
@@ -130,6 +131,14 @@ impl Model {
                 break;
             }
         }
+        // Units that no water passes come along with the others of their site.
+        let site = |unit: &str| unit.split_once('.').map(|(site, _)| SmolStr::from(site));
+        let sites: HashSet<SmolStr> = kept_units.iter().filter_map(|unit| site(unit)).collect();
+        let dry = model.units.iter().filter(|unit| {
+            WITHOUT_PORTS.contains(&unit.params.kind())
+                && site(&unit.id).is_some_and(|site| sites.contains(&site))
+        });
+        kept_units.extend(dry.map(|unit| unit.id.clone()));
         model.units.retain(|unit| kept_units.contains(&unit.id));
         model.circuits.retain(|circuit| {
             kept_units.iter().any(|unit| circuit.through.iter().any(|member| of(member, unit)))

@@ -43,7 +43,7 @@ pub struct ElectricVehicleParams {
     pub arrival_s: f64,
     /// Standard deviation of that time, s.
     pub arrival_deviation_s: f64,
-    /// Number that chooses the sequence of arrivals.
+    /// Number that chooses the sequence of arrivals, with the name of the unit.
     pub seed: u64,
     /// Local clock over UTC, s.
     pub utc_offset_s: f64,

@@ -45,7 +45,7 @@ pub struct HouseholdParams {
     pub annual_j: f64,
     /// People who live there.
     pub inhabitants: u32,
-    /// Number that chooses the sequence of everything random.
+    /// Number that chooses the sequence of everything random, with the name of the unit.
     pub seed: u64,
     /// Share of the electricity that is always drawn.
     pub base_share: f64,

@@ -4087,7 +4087,7 @@ class _Unit:
             Mean volume of a day at the set temperature, m3; without it the signal `v_flow_m3_s` drives the
             draws. Also daily_l.
         seed
-            Number that chooses the sequence of draws. Default: 1.
+            Number that chooses the sequence of draws, with the name of the unit. Default: 1.
         weekend_factor
             Volume of a day at the weekend over that of a workday. Default: 1.2.
         season_amplitude
@@ -4502,7 +4502,7 @@ class _Unit:
         inhabitants
             People who live there. Default: 6.
         seed
-            Number that chooses the sequence of everything random. Default: 1.
+            Number that chooses the sequence of everything random, with the name of the unit. Default: 1.
         base_share
             Share of the electricity that is always drawn. Default: 0.3.
         season_amplitude
@@ -4603,7 +4603,7 @@ class _Unit:
             Standard deviation of that time, s. Default: 3600.0. Also arrival_deviation_min,
             arrival_deviation_h, arrival_deviation_d.
         seed
-            Number that chooses the sequence of arrivals. Default: 1.
+            Number that chooses the sequence of arrivals, with the name of the unit. Default: 1.
         utc_offset_s
             Local clock over UTC, s. Default: 3600.0. Also utc_offset_min, utc_offset_h, utc_offset_d.
         """

@@ -75,7 +75,8 @@ impl Builder<'_> {
     }
 
     fn equipment(&mut self, spec: &UnitSpec) -> Option<Equipment> {
-        match spec.params.build(&self.model.medium) {
+        let named = spec.params.named(&spec.id);
+        match named.as_ref().unwrap_or(&spec.params).build(&self.model.medium) {
             Ok(equipment) => Some(equipment),
             Err(error) => {
                 let what = format!("unit \"{}\" ({})", spec.id, spec.params.kind());

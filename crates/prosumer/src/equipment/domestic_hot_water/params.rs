@@ -41,7 +41,7 @@ pub struct DomesticHotWaterParams {
     /// Mean volume of a day at the set temperature, m3; without it the signal `v_flow_m3_s` drives the draws.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub daily_m3: Option<f64>,
-    /// Number that chooses the sequence of draws.
+    /// Number that chooses the sequence of draws, with the name of the unit.
     pub seed: u64,
     /// Volume of a day at the weekend over that of a workday.
     pub weekend_factor: f64,
