@@ -35,7 +35,7 @@ pub struct GeojsonOptions {
     pub snap_m: f64,
     /// Leaves out the nodes that only join two equal pipes.
     pub simplify: bool,
-    /// Type of the pipes that say neither type nor diameter.
+    /// Type of the pipes that say neither type nor diameter; `{NAME}` stands for a property of the pipe.
     pub pipe: Option<String>,
     /// Lines are trenches with supply and return, points are sites.
     pub trenches: bool,
@@ -53,7 +53,8 @@ impl Default for GeojsonOptions {
 /// When the file is no GeoJSON in longitude and latitude, has no pipes, a pipe has neither geometry nor length,
 /// or pipes say neither type nor diameter and no type is given for them.
 pub fn import(bytes: &[u8], options: &GeojsonOptions) -> Result<Import, Vec<ImportError>> {
-    let (mut network, mut notes) = features::read(&text_of(bytes)).map_err(|error| vec![error])?;
+    let (mut network, mut notes) =
+        features::read(&text_of(bytes), options.pipe.as_deref()).map_err(|error| vec![error])?;
     join::join(&mut network, options.snap_m, &mut notes)?;
     if options.simplify {
         simplify::simplify(&mut network, &mut notes);

@@ -26,7 +26,7 @@ pub struct GeojsonArguments {
     /// Leave out the nodes that only join two equal pipes; the lengths add up
     #[arg(long)]
     simplify: bool,
-    /// Type of the pipes that say neither type nor diameter, for example "steel DN50"
+    /// Type of the pipes that say neither type nor diameter, for example "steel DN50", or "steel DN{DN}" by their property DN
     #[arg(long, value_name = "TYPE")]
     pipe: Option<String>,
     /// Lines are trenches with supply and return, points are sites

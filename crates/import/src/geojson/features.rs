@@ -45,14 +45,14 @@ pub(super) struct Network {
 }
 
 /// Reads a file; what it has no use for is noted.
-pub(super) fn read(text: &str) -> Result<(Network, Vec<Note>), ImportError> {
+pub(super) fn read(text: &str, pipe: Option<&str>) -> Result<(Network, Vec<Note>), ImportError> {
     let file: GeoJson = text
         .parse()
         .map_err(|error| ImportError::new(None, format!("this is no GeoJSON: {error}")))?;
     let GeoJson::FeatureCollection(collection) = file else {
         return Err(ImportError::new(None, "the file has no `FeatureCollection`: export a layer"));
     };
-    let mut reader = Reader::default();
+    let mut reader = Reader { pipe, ..Reader::default() };
     if let Some(members) = &collection.foreign_members {
         reader.network.name = members.get("name").and_then(Value::as_str).map(str::to_owned);
         check_system(members)?;
@@ -83,7 +83,11 @@ fn check_system(members: &Map<String, Value>) -> Result<(), ImportError> {
 }
 
 #[derive(Default)]
-struct Reader {
+struct Reader<'a> {
+    /// Type of the pipes without type and diameter.
+    pipe: Option<&'a str>,
+    /// Number of such pipes.
+    typed: usize,
     network: Network,
     node_ids: HashSet<String>,
     edge_ids: HashSet<String>,
@@ -95,7 +99,7 @@ struct Reader {
     split: usize,
 }
 
-impl Reader {
+impl Reader<'_> {
     fn feature(&mut self, number: usize, feature: Feature) -> Result<(), ImportError> {
         let properties = feature.properties.unwrap_or_default();
         let id = name(&properties, feature.id.as_ref());
@@ -112,7 +116,7 @@ impl Reader {
             Some(GeometryValue::LineString { coordinates }) => {
                 let path = path(&coordinates).map_err(&wrong)?;
                 let length_m = length(&properties).map_err(&wrong)?;
-                self.line(id, path, length_m, &properties);
+                self.line(id.clone(), path, length_m, &properties).map_err(&wrong)?;
             }
             Some(GeometryValue::MultiLineString { coordinates }) => {
                 let paths: Vec<Vec<LonLat>> = coordinates
@@ -121,11 +125,11 @@ impl Reader {
                     .collect::<Result<_, _>>()
                     .map_err(&wrong)?;
                 let length_m = length(&properties).map_err(&wrong)?;
-                self.parts(id, &paths, length_m, &properties);
+                self.parts(id.clone(), &paths, length_m, &properties).map_err(&wrong)?;
             }
             None if properties.contains_key("from") && properties.contains_key("to") => {
                 let length_m = length(&properties).map_err(&wrong)?;
-                self.line(id, Vec::new(), length_m, &properties);
+                self.line(id.clone(), Vec::new(), length_m, &properties).map_err(&wrong)?;
             }
             None if id.is_some() => self.point(id, None, None, &properties),
             other => {
@@ -160,20 +164,26 @@ impl Reader {
         path: Vec<LonLat>,
         length_m: Option<f64>,
         properties: &Map<String, Value>,
-    ) {
+    ) -> Result<(), String> {
         let id = own(&mut self.edge_ids, &mut self.renamed, id, "pipe");
         let kind = properties.get("kind").and_then(Value::as_str).unwrap_or("pipe").to_owned();
         let taken = |name: &str, value: &Value| {
             kind == "pipe" && properties::length_m(name, value).is_some()
         };
         let others = properties.iter().filter(|(name, value)| !taken(name, value));
-        let taken = ["id", "name", "from", "to"];
+        let asked = self.pipe.map_or(Vec::new(), |pipe| placeholders(pipe));
+        let taken = [&["id", "name", "from", "to"], &asked[..]].concat();
         let mut fields = properties::fields(others, &taken, false, &mut self.unknown);
         fields.retain(|(name, _)| name != "kind");
+        if let Some(pipe) = self.pipe.filter(|_| kind == "pipe" && !is_typed(&fields)) {
+            self.typed += 1;
+            fields.push(("pipe".to_owned(), type_of(pipe, properties)?.into()));
+        }
         let end = |name: &str| properties.get(name).and_then(text).filter(|name| !name.is_empty());
         let ends = [end("from"), end("to")];
         let length_m = length_m.filter(|_| kind == "pipe");
         self.network.lines.push(Line { id, kind, ends, path, length_m, fields });
+        Ok(())
     }
 
     /// A line of several parts becomes several pipes, which share its length as they are drawn.
@@ -183,7 +193,7 @@ impl Reader {
         paths: &[Vec<LonLat>],
         length_m: Option<f64>,
         properties: &Map<String, Value>,
-    ) {
+    ) -> Result<(), String> {
         if let [path] = paths {
             return self.line(id, path.clone(), length_m, properties);
         }
@@ -196,8 +206,9 @@ impl Reader {
         properties.remove("to");
         for (i, (path, drawn)) in paths.iter().zip(drawn).enumerate() {
             let id = id.as_ref().map(|id| format!("{id}.{}", i + 1));
-            self.line(id, path.clone(), length_m.map(|m| m * drawn / total), &properties);
+            self.line(id, path.clone(), length_m.map(|m| m * drawn / total), &properties)?;
         }
+        Ok(())
     }
 
     fn notes(&self) -> Vec<Note> {
@@ -209,6 +220,11 @@ impl Reader {
         }
         for (shape, count) in &self.shapes {
             note(NoteKind::NotTranslated, format!("{count} features: {shape}"));
+        }
+        if let Some(pipe) = self.pipe.filter(|_| self.typed > 0) {
+            let count = self.typed;
+            let what = format!("{count} pipes without type and diameter are \"{pipe}\"");
+            note(NoteKind::Changed, what);
         }
         for name in &self.renamed {
             note(NoteKind::Changed, format!("{name}: the name occurs twice"));
@@ -227,6 +243,29 @@ impl Reader {
         }
         notes
     }
+}
+
+/// Whether fields say the size of a pipe.
+pub(super) fn is_typed(fields: &Fields) -> bool {
+    let known = |name: &str| name == "pipe" || name.starts_with("inner_diameter_");
+    fields.iter().any(|(name, value)| known(name) && !value.is_null())
+}
+
+/// Names of the properties that a type asks for: `DN` of `steel DN{DN}`.
+fn placeholders(pipe: &str) -> Vec<&str> {
+    pipe.split('{').skip(1).filter_map(|rest| Some(rest.split_once('}')?.0)).collect()
+}
+
+/// The type of a pipe with its properties put in.
+fn type_of(pipe: &str, properties: &Map<String, Value>) -> Result<String, String> {
+    let mut out = pipe.to_owned();
+    for name in placeholders(pipe) {
+        let value = properties.get(name).and_then(text).ok_or_else(|| {
+            format!("its type \"{pipe}\" asks for a property \"{name}\", which it does not have")
+        })?;
+        out = out.replace(&format!("{{{name}}}"), &value);
+    }
+    Ok(out)
 }
 
 /// A name that nothing else has.

@@ -147,6 +147,27 @@ fn chains_of_equal_pipes_become_one() {
 }
 
 #[test]
+fn types_follow_from_properties() {
+    let pipe = |properties: Value| line(&[[1.0, 2.0], [1.0, 2.001]], properties);
+    let options = GeojsonOptions { pipe: Some("steel DN{DN}".into()), ..GeojsonOptions::default() };
+    let import =
+        read(vec![pipe(json!({"DN": 65})), pipe(json!({"pipe": "steel DN20"}))], &options).unwrap();
+    assert!(pipes(&import)[0].ends_with("pipe = \"steel DN65\""), "{}", pipes(&import)[0]);
+    assert!(pipes(&import)[1].ends_with("pipe = \"steel DN20\""));
+    assert!(said(
+        &import,
+        NoteKind::Changed,
+        "1 pipes without type and diameter are \"steel DN{DN}\""
+    ));
+    assert!(!said(&import, NoteKind::NotTranslated, "property"), "{:?}", import.notes);
+    let message = read(vec![pipe(json!({"id": "p", "dn": 65}))], &options).unwrap_err();
+    assert!(
+        message.contains("(\"p\"): its type \"steel DN{DN}\" asks for a property \"DN\""),
+        "{message}"
+    );
+}
+
+#[test]
 fn trenches_have_sites_at_their_ends() {
     let options = GeojsonOptions {
         trenches: true,

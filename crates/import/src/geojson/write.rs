@@ -1,7 +1,7 @@
 //! The network as text of a model.
 
 use super::GeojsonOptions;
-use super::features::{Line, Network, Point};
+use super::features::{Line, Network, Point, is_typed};
 use super::place::Plane;
 use super::properties::toml;
 use crate::model_text::{Entry, ModelText};
@@ -19,19 +19,15 @@ pub(super) fn write(
         text.note(note.kind, note.line, note.text);
     }
     let untyped: Vec<&Line> =
-        network.lines.iter().filter(|line| line.is_pipe() && !is_typed(line)).collect();
+        network.lines.iter().filter(|line| line.is_pipe() && !is_typed(&line.fields)).collect();
     if let Some(first) = untyped.first() {
-        let count = untyped.len();
-        let Some(pipe) = &options.pipe else {
-            let message = format!(
-                "{count} pipes have neither `pipe` nor `inner_diameter_m` (or another unit), the first is \"{}\": \
-                 --pipe \"steel DN50\" gives them a type of the catalogue",
-                first.id
-            );
-            return Err(vec![ImportError::new(None, message)]);
-        };
-        let what = format!("{count} pipes without type and diameter are \"{pipe}\"");
-        text.note(NoteKind::Changed, None, what);
+        let message = format!(
+            "{} pipes have neither `pipe` nor `inner_diameter_m` (or another unit), the first is \"{}\": --pipe \
+             \"steel DN50\" gives them a type of the catalogue, --pipe \"steel DN{{DN}}\" one by their property DN",
+            untyped.len(),
+            first.id
+        );
+        return Err(vec![ImportError::new(None, message)]);
     }
     let plane = Plane::around(network.points.iter().filter_map(|point| point.at));
     let name = network.name.as_deref().unwrap_or("GeoJSON network");
@@ -54,11 +50,6 @@ pub(super) fn write(
         text.note(NoteKind::NotTranslated, None, what.to_owned());
     }
     Ok(text.finish(TITLE))
-}
-
-fn is_typed(line: &Line) -> bool {
-    let known = |name: &str| name == "pipe" || name.starts_with("inner_diameter_");
-    line.fields.iter().any(|(name, value)| known(name) && !value.is_null())
 }
 
 fn node(
@@ -99,10 +90,6 @@ fn edge(
         text.edge(&line.id, &line.kind, from, to)
     };
     let entry = entry.maybe("length_m", line.length_m);
-    let entry = match &options.pipe {
-        Some(pipe) if line.is_pipe() && !is_typed(line) => entry.text("pipe", pipe),
-        _ => entry,
-    };
     fields_of(entry, line.fields.iter(), &line.id)
 }
 
