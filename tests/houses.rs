@@ -382,6 +382,14 @@ fn the_house_of_the_laboratory_heats_for_itself() {
     assert!(of("tank.t_10_k") > 320.0 && of("collector.heat_j") > 0.0);
     // More electricity than the house needs.
     assert!(of("grid.export_j") > of("grid.import_j"));
+    // Half hours: everything that changes within a step stays within the water, and the same heat arrives.
+    let mut coarse = self::simulation(&text);
+    advance(&mut coarse, 2.0 * 86_400.0, 1800.0);
+    assert!(Balances::of(&coarse).units_error() < 1e-9);
+    for name in ["sf1.building.heat_j", "sf1.water.taken_j"] {
+        let (coarse, fine) = (get(&coarse, name), get(&simulation, name));
+        assert!((coarse - fine).abs() < 0.02 * fine, "{name}: {coarse} {fine}");
+    }
     let kpis = summary(&simulation, false)["kpis"].clone();
     let exported_kwh = kpis["units"]["sf1.grid"]["exported_kwh"].as_f64().unwrap();
     assert!((exported_kwh * 3.6e6 - of("grid.export_j")).abs() < 1.0);

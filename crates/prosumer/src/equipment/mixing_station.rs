@@ -10,8 +10,9 @@
 //!
 //! **Assumptions** the flow is that of the heating (its thermostats); its pump draws a constant power while water
 //! flows; the mixer is controlled perfectly, so it does not swing as the laboratory's does. **Validity** means over a
-//! step. **Numerics** storage and return of the step before set the mixer; the outlet is linear in the return, and what
-//! the heating got is what the storage gives. **Sources** `zinsmeister2023`, `prohmo`; design temperature assumed.
+//! step. **Numerics** storage and return of the step before set the mixer and the flow from the storage; the outlet is linear
+//! in the return. Where they change within a step the storage gives a little more or less than the heating gets: the unit
+//! holds that heat and evens it out in the next step; water goes back no colder than the return. **Sources** `zinsmeister2023`, `prohmo`; design temperature assumed.
 
 use crate::equipment::liquid;
 use crate::thermal_unit::{
@@ -84,7 +85,7 @@ impl Default for MixingStationParams {
 }
 
 /// A mixing station ready to run. State: share of the mixer; length of the step, s; inlets of storage and heating, K;
-/// heat and electricity so far, J.
+/// heat and electricity so far, J; heat held, J.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MixingStation {
     params: MixingStationParams,
@@ -97,6 +98,7 @@ const STORAGE_K: usize = 2;
 const RETURN_K: usize = 3;
 const HEAT_J: usize = 4;
 const ELECTRIC_J: usize = 5;
+const HELD_J: usize = 6;
 
 const STORAGE: usize = 0;
 const HEATING: usize = 1;
@@ -174,11 +176,16 @@ impl MixingStation {
     }
 }
 
+/// Water of the storage and of the return.
+fn mixed(share: f64, storage_k: f64) -> Outlet {
+    Outlet::Linear { constant_k: share * storage_k, of_inlet: 1.0 - share }
+}
+
 impl ThermalUnit for MixingStation {
     fn ports(&self) -> Vec<UnitPort> {
         vec![
-            UnitPort { name: "storage".into(), sets_flow: true, leads: false },
-            UnitPort { name: "heating".into(), sets_flow: false, leads: true },
+            UnitPort { name: "storage".into(), sets_flow: true, leads: true },
+            UnitPort { name: "heating".into(), sets_flow: false, leads: false },
         ]
     }
 
@@ -204,7 +211,7 @@ impl ThermalUnit for MixingStation {
     }
 
     fn initial_state(&self, initial_k: f64) -> Vec<f64> {
-        vec![0.0, 0.0, initial_k, initial_k, 0.0, 0.0]
+        vec![0.0, 0.0, initial_k, initial_k, 0.0, 0.0, 0.0]
     }
 
     fn begin(&self, dt_s: f64, state: &mut [f64]) {
@@ -225,26 +232,31 @@ impl ThermalUnit for MixingStation {
             flow_kg_s = heating.m_flow_kg_s.abs();
         }
         let (share, _) = self.turned(signals, state);
-        let heat_w =
-            capacity_w_k(&self.medium, share * flow_kg_s) * (state[STORAGE_K] - state[RETURN_K]);
-        wanted[STORAGE] =
-            PortRequest { m_flow_kg_s: share * flow_kg_s, outlet: Outlet::HeatFlow(-heat_w) };
-        wanted[HEATING].outlet =
-            Outlet::Linear { constant_k: share * state[STORAGE_K], of_inlet: 1.0 - share };
+        let lift_k = state[STORAGE_K] - state[RETURN_K];
+        let mixed_kg_s = share * flow_kg_s;
+        let held_w = if state[STEP_S] > 0.0 { state[HELD_J] / state[STEP_S] } else { 0.0 };
+        let heat_w = (capacity_w_k(&self.medium, mixed_kg_s) * lift_k - held_w).max(0.0);
+        wanted[STORAGE] = if lift_k > LEAST_K {
+            PortRequest {
+                m_flow_kg_s: heat_w / (lift_k * self.medium.heat_capacity_j_kg_k),
+                outlet: Outlet::Cooled { wanted_w: heat_w, coldest_k: state[RETURN_K] },
+            }
+        } else {
+            PortRequest { m_flow_kg_s: mixed_kg_s, outlet: Outlet::HeatFlow(0.0) }
+        };
+        wanted[HEATING].outlet = mixed(share, state[STORAGE_K]);
     }
 
     fn respond(
         &self,
         _port: usize,
-        _signals: &Signals<'_>,
+        signals: &Signals<'_>,
         got: &[PortFlow],
-        _state: &mut [f64],
+        state: &mut [f64],
         wanted: &mut [PortRequest],
     ) {
-        let heating = &got[HEATING];
-        let heat_w =
-            capacity_w_k(&self.medium, heating.m_flow_kg_s) * (heating.t_out_k - heating.t_in_k);
-        wanted[STORAGE].outlet = Outlet::HeatFlow(-heat_w);
+        let (share, _) = self.turned(signals, state);
+        wanted[HEATING].outlet = mixed(share, got[STORAGE].t_in_k);
     }
 
     fn advance(
@@ -270,6 +282,7 @@ impl ThermalUnit for MixingStation {
         state[STORAGE_K] = storage.t_in_k;
         state[RETURN_K] = heating.t_in_k;
         state[HEAT_J] += dt_s * q_w;
+        state[HELD_J] -= dt_s * (q_w + heat_w(storage));
         state[ELECTRIC_J] += dt_s * electric_w;
         out.copy_from_slice(&[
             q_w,
@@ -280,7 +293,11 @@ impl ThermalUnit for MixingStation {
             state[HEAT_J],
             state[ELECTRIC_J],
         ]);
-        Exchange { electric_w, external_w: q_w + heat_w(storage) - electric_w }
+        Exchange { electric_w, external_w: -electric_w }
+    }
+
+    fn stored_j(&self, state: &[f64]) -> f64 {
+        state[HELD_J]
     }
 }
 
@@ -307,16 +324,23 @@ mod tests {
             let mut wanted = [PortRequest::default(); 2];
             unit.begin(dt_s, &mut state);
             unit.request(&signals, &ports, &mut state, &mut wanted);
-            let Outlet::Linear { constant_k, of_inlet } = wanted[1].outlet else { panic!() };
-            ports[1].t_out_k = constant_k + of_inlet * ports[1].t_in_k;
-            unit.respond(1, &signals, &ports, &mut state, &mut wanted);
             let m_flow_kg_s = wanted[0].m_flow_kg_s;
-            let q_w = wanted[0].outlet.heat_flow_w().unwrap();
+            let q_w = match wanted[0].outlet {
+                Outlet::Cooled { wanted_w, .. } => -wanted_w,
+                _ => 0.0,
+            };
             ports[0].m_flow_kg_s = m_flow_kg_s;
             ports[0].t_out_k = ports[0].t_in_k
                 + if m_flow_kg_s > 0.0 { q_w / (m_flow_kg_s * 4180.0) } else { 0.0 };
+            unit.respond(0, &signals, &ports, &mut state, &mut wanted);
+            let Outlet::Linear { constant_k, of_inlet } = wanted[1].outlet else { panic!() };
+            ports[1].t_out_k = constant_k + of_inlet * ports[1].t_in_k;
+            let before_j = unit.stored_j(&state);
             let exchange = unit.advance(dt_s, &signals, &ports, &mut state, &mut out);
             assert!((exchange.electric_w + exchange.external_w).abs() < 1e-9);
+            let held_w = (unit.stored_j(&state) - before_j) / dt_s;
+            let heating_w = 0.2 * 4180.0 * (ports[1].t_out_k - ports[1].t_in_k);
+            assert!((held_w + q_w + heating_w).abs() < 1e-6, "{held_w} {q_w} {heating_w}");
             assert!(ports[1].t_out_k <= ports[0].t_in_k + 1e-9, "T_mix <= T_in");
         }
         (ports[1].t_out_k - 273.15, ports[0].m_flow_kg_s)

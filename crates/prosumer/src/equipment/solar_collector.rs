@@ -7,9 +7,10 @@
 //! ```
 //! **Internal control** the pump starts where the collector is warmer than the water that would come back by
 //! `start_difference_k`, and stops below `stop_difference_k`. Its flow rises from nothing to the full one while that
-//! difference goes from `flow_from_difference_k` to `flow_full_difference_k`, at least `LEAST_SHARE` of it; or it holds
-//! the supply: `supply_set_k`, where the storage is warmer `supply_high_k`. It rests while the water comes back above
-//! `return_max_k`, and while the collector is hotter than `collector_max_k` (it stagnates, and cools down first).
+//! difference goes from `flow_from_difference_k` to `flow_full_difference_k`, at least `LEAST_SHARE` of it and what
+//! keeps the collector below `collector_max_k`; or it holds the supply: `supply_set_k`, where the storage is warmer
+//! `supply_high_k`. It rests while the water comes back above `return_max_k`, and while the collector is hotter than
+//! `collector_max_k` (it stagnates, and cools down first).
 //!
 //! **Assumptions** the brine counts as water of the same capacity flow (glycol of 40 %: 13 % more litres); the pipes to
 //! the roof hold nothing and lose nothing. **Validity** efficiency curves of ISO 9806; no steam. **Numerics** implicit
@@ -156,7 +157,11 @@ impl SolarCollector {
                     / (lift_k * self.medium.heat_capacity_j_kg_k * self.most_kg_s)
             }
         };
-        self.most_kg_s * share.clamp(LEAST_SHARE, 1.0)
+        // Within a long step the sun may rise: the flow carries off what it sends now.
+        let room_k = (p.collector_max_k - back_k).max(1.0);
+        let carried_kg_s =
+            weather.absorbed_w_m2 * p.area_m2 / (room_k * self.medium.heat_capacity_j_kg_k);
+        (self.most_kg_s * share.max(LEAST_SHARE)).max(carried_kg_s).min(self.most_kg_s)
     }
 }
 

@@ -122,6 +122,16 @@ fn the_pump_by_differences() {
 }
 
 #[test]
+fn a_sunrise_within_a_long_step_does_not_boil() {
+    for back_degc in [30.0, 60.0, 80.0] {
+        let mut bench = Bench::new(&SolarCollectorParams::default(), back_degc);
+        bench.state[..CELLS].fill(back_degc + 3.2 + 273.15);
+        bench.step(3600.0, 1000.0);
+        assert!(bench.port.m_flow_kg_s > 0.0 && bench.port.t_out_k < 368.15, "{:?}", bench.port);
+    }
+}
+
+#[test]
 fn the_supply_is_held() {
     let params = SolarCollectorParams {
         flow_control: CollectorFlow::Supply,
