@@ -204,7 +204,7 @@ fn hostile_names_in_a_browser() {
 
 #[test]
 fn a_thousand_consumers_and_a_million_points_in_a_browser() {
-    let mut recording = synthetic::district(1000, 300);
+    let mut recording = synthetic::district(1000, 150);
     let kpis = (0..1000).map(|i| {
         (format!("h{i:04}.station"), serde_json::json!({"heat_taken_kwh": (i * 7) % 1000}))
     });
