@@ -65,6 +65,13 @@ enum Command {
         #[arg(long)]
         advise: bool,
     },
+    /// Where a model and measurements disagree, which effect is missing, and what adding it brings
+    Explain {
+        /// Model file
+        model: PathBuf,
+        #[command(flatten)]
+        wanted: commands::explain::ExplainArguments,
+    },
     /// Find everything that is wrong with a model
     Check {
         /// Model file
@@ -168,6 +175,7 @@ fn main() -> ExitCode {
         Command::Run { model, until, step, record, out } => {
             commands::run::run(&model, [until, step, record], out.as_deref())
         }
+        Command::Explain { model, wanted } => commands::explain::explain(&model, &wanted),
         Command::Solve { model, json } => commands::solve::solve(&model, json.as_deref()),
         Command::Stability { model, json, advise } => {
             commands::stability::stability(&model, json.as_deref(), advise)

@@ -1,0 +1,127 @@
+//! `anergy explain`: where a model and measurements disagree, which effect is missing, and what adding it brings.
+
+use super::run::read_model;
+use crate::failure::Failure;
+use crate::output::line;
+use anergy_discrepancy::addition::{added, reverted};
+use anergy_discrepancy::data;
+use anergy_discrepancy::error::ExplainError;
+use anergy_discrepancy::experiment::Experiment;
+use anergy_discrepancy::explain::explain as compare;
+use anergy_discrepancy::sensors::SensorFile;
+use anergy_discrepancy::show;
+use anergy_discrepancy::split::{SplitFile, Use};
+use std::path::{Path, PathBuf};
+
+/// What is compared, and where the result goes.
+#[derive(Debug, clap::Args)]
+pub struct ExplainArguments {
+    /// Table of measurements: time_s, run (optional), a column per sensor
+    #[arg(long, value_name = "CSV", required_unless_present = "revert")]
+    data: Option<PathBuf>,
+    /// What the columns are, and how good the sensors
+    #[arg(long, value_name = "TOML", required_unless_present = "revert")]
+    sensors: Option<PathBuf>,
+    /// Which blocks of time are fitted, which choose, which are shown (default: in turns)
+    #[arg(long, value_name = "TOML")]
+    split: Option<PathBuf>,
+    /// Folder for report.html, report.md, report.json and the explained model
+    #[arg(long, value_name = "DIR", default_value = "results/explain")]
+    out: PathBuf,
+    /// Take an effect that was added out of the model file again
+    #[arg(long, value_name = "ID", conflicts_with_all = ["data", "sensors", "split"])]
+    revert: Option<String>,
+}
+
+/// Explains, or takes an explanation back.
+pub fn explain(path: &Path, wanted: &ExplainArguments) -> Result<(), Failure> {
+    match (&wanted.revert, &wanted.data, &wanted.sensors) {
+        (Some(id), ..) => revert(path, id),
+        (None, Some(data), Some(sensors)) => {
+            find(path, data, sensors, wanted.split.as_deref(), &wanted.out)
+        }
+        _ => Err(Failure::Usage("--data and --sensors are needed".into())),
+    }
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    std::fs::read_to_string(path).map_err(|error| Failure::file("cannot read", path, &error))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| Failure::file("cannot write", path, &error))
+}
+
+fn revert(path: &Path, id: &str) -> Result<(), Failure> {
+    let text = reverted(&read(path)?, id).map_err(failed)?;
+    write(path, &text)?;
+    line!("[[effect]] {id} is taken out of {}", path.display());
+    Ok(())
+}
+
+fn find(
+    path: &Path,
+    data_file: &Path,
+    sensor_file: &Path,
+    split_file: Option<&Path>,
+    out: &Path,
+) -> Result<(), Failure> {
+    let (text, model) = read_model(path)?;
+    let sensors = SensorFile::from_toml(&read(sensor_file)?).map_err(failed)?;
+    let runs = data::read(&read(data_file)?, &sensors).map_err(failed)?;
+    let split = split_file.map(|file| read(file)).transpose()?;
+    let split = split.map(|text| SplitFile::from_toml(&text)).transpose().map_err(failed)?;
+    let name = model.name.clone();
+    let model_failed = |error: ExplainError| match error {
+        ExplainError::Model(problems) => {
+            Failure::Model { problems, file: path.display().to_string(), text: text.clone() }
+        }
+        other => failed(other),
+    };
+    let experiment = Experiment::new(model, sensors, runs).map_err(model_failed)?;
+    let found = compare(&experiment, split.as_ref()).map_err(failed)?;
+    std::fs::create_dir_all(out).map_err(|error| Failure::file("cannot create", out, &error))?;
+    let title = format!("{name}: simulation and measurement");
+    let json = serde_json::to_string_pretty(&show::json(&found));
+    write(&out.join("report.json"), &(json.map_err(|e| Failure::File(e.to_string()))? + "\n"))?;
+    write(&out.join("report.md"), &show::markdown(&title, &found))?;
+    write(&out.join("report.html"), &show::html(&title, &experiment, &found))?;
+    line!("{} {}.", found.verdict.sentence(), found.because);
+    for problem in &found.problems {
+        line!("  {problem}");
+    }
+    for effect in &found.effects {
+        let (id, component, words) = (effect.id, &effect.component, effect.words);
+        line!("  {id} at {component}: {words}, {} = {}", effect.parameter, show::value(effect));
+    }
+    if found.class.len() > 1 {
+        line!("  not told apart by these data:");
+        for effect in &found.class {
+            let (id, component, words) = (effect.id, &effect.component, effect.words);
+            line!("    {id} at {component}: {words}; to tell: {}", effect.separates);
+        }
+    }
+    for gap in found.gaps.iter().filter(|gap| gap.part == Use::Show && gap.regime == "all") {
+        let (column, unit) = (&gap.column, &gap.unit);
+        line!(
+            "  {column}: {:.3} -> {:.3} {unit} (root mean square, not fitted)",
+            gap.rmse_before,
+            gap.rmse_after
+        );
+    }
+    if found.effects.iter().any(|effect| !effect.of_sensor()) {
+        let stem = path.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy());
+        let explained = out.join(format!("{stem}.explained.toml"));
+        write(&explained, &added(&text, &found.effects, &found.because))?;
+        line!("\nthe model with what was missing: {}", explained.display());
+    }
+    line!("\nresults in {}: report.html, report.md, report.json", out.display());
+    Ok(())
+}
+
+fn failed(error: ExplainError) -> Failure {
+    match error {
+        ExplainError::Run(error) => Failure::Run(error),
+        other => Failure::File(other.to_string()),
+    }
+}

@@ -1,0 +1,313 @@
+//! The model under the measured inputs: what every compared sensor should have read.
+//!
+//! **Equation** a sensor reads `y(t) = g x(t + delta) + b` of its quantity `x`, behind a first-order lag where it has
+//! one. Measured inputs drive their signals with `x = (y - b)/g`. A temperature of a step is its mean and
+//! belongs to its middle; the water of a run begins at the mean of the temperatures that are read first.
+
+use crate::data::{Run, Track};
+use crate::error::ExplainError;
+use crate::sensors::{Accuracy, Role, SensorFile};
+use crate::unknown::{Target, Unknown};
+use anergy_core::clock::Time;
+use anergy_core::ids::ChannelId;
+use anergy_simulation::build::build;
+use anergy_simulation::effect::EffectSpec;
+use anergy_simulation::effects::EffectParams;
+use anergy_simulation::error::RunError;
+use anergy_simulation::model::{DriverSpec, Model, Place};
+use anergy_simulation::model_file::Interpolation;
+use anergy_simulation::simulation::Simulation;
+use serde_json::{Map, Value};
+
+/// A reading that is compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Run.
+    pub run: usize,
+    /// Sensor, by its place in the sensor file.
+    pub sensor: usize,
+    /// Time, s.
+    pub time_s: f64,
+    /// Reading, SI.
+    pub value: f64,
+}
+
+/// Model, measurements and sensors together.
+pub struct Experiment {
+    /// The model.
+    pub model: Model,
+    /// The sensors.
+    pub sensors: SensorFile,
+    /// The runs.
+    pub runs: Vec<Run>,
+    /// Accuracy of every sensor.
+    pub accuracy: Vec<Accuracy>,
+    /// Every compared reading, by run, sensor and time.
+    pub samples: Vec<Sample>,
+    step: Time,
+}
+
+impl Experiment {
+    /// Checks that sensors, data and model belong together.
+    ///
+    /// # Errors
+    /// A signal or channel that the model does not have, a unit that does not fit, a model that does not build.
+    pub fn new(model: Model, sensors: SensorFile, runs: Vec<Run>) -> Result<Self, ExplainError> {
+        let plan = build(&model).map_err(ExplainError::Model)?;
+        for sensor in &sensors.sensor {
+            let problem =
+                |problem: String| ExplainError::Sensor { column: sensor.column.clone(), problem };
+            let (si, name) = (sensor.si(), &sensor.signal);
+            let (what, names): (_, Vec<(&str, String)>) = match sensor.role {
+                Role::Input => (
+                    "signal",
+                    plan.signals()
+                        .specs()
+                        .iter()
+                        .map(|s| (s.name.as_str(), s.unit.to_owned()))
+                        .collect(),
+                ),
+                Role::Compare => (
+                    "channel",
+                    plan.channels()
+                        .iter()
+                        .map(|c| (c.name.as_str(), suffix(&c.quantity).to_owned()))
+                        .collect(),
+                ),
+            };
+            let Some((_, unit)) = names.iter().find(|(known, _)| known == name) else {
+                let nearest =
+                    names.iter().min_by_key(|(known, _)| strsim::levenshtein(known, name));
+                let hint = nearest
+                    .map_or(String::new(), |(known, _)| format!("; did you mean \"{known}\"?"));
+                return Err(problem(format!("the model has no {what} \"{name}\"{hint}")));
+            };
+            let fits = *unit == si || (unit.is_empty() && si == "1");
+            if !fits {
+                let (has, is) = (&sensor.unit, unit);
+                return Err(problem(format!(
+                    "its unit \"{has}\" is none of {name}, which is in \"{is}\""
+                )));
+            }
+        }
+        let accuracy = sensors.sensor.iter().enumerate().map(|(i, sensor)| {
+            let all = || runs.iter().flat_map(|run| run.tracks[i].value.iter().copied());
+            let count = all().count().max(1) as f64;
+            let largest = all().fold(0.0_f64, |largest, y| largest.max(y.abs()));
+            sensor.accuracy(all().sum::<f64>() / count, largest)
+        });
+        let accuracy = accuracy.collect();
+        let mut samples = Vec::new();
+        for (run, measured) in runs.iter().enumerate() {
+            for (sensor, track) in measured.tracks.iter().enumerate() {
+                if sensors.sensor[sensor].role == Role::Compare {
+                    let readings = track.time_s.iter().zip(&track.value);
+                    samples.extend(readings.map(|(&time_s, &value)| Sample {
+                        run,
+                        sensor,
+                        time_s,
+                        value,
+                    }));
+                }
+            }
+        }
+        let step = plan.step();
+        Ok(Self { model, sensors, runs, accuracy, samples, step })
+    }
+
+    /// What the sensors should have read, with values for the unknowns.
+    ///
+    /// # Errors
+    /// What keeps the model from running.
+    pub fn readings(&self, unknowns: &[Unknown], at: &[f64]) -> Result<Vec<f64>, ExplainError> {
+        self.readings_in_steps(unknowns, at, 1)
+    }
+
+    /// The same in steps that are so many times shorter.
+    ///
+    /// # Errors
+    /// What keeps the model from running.
+    pub fn readings_in_steps(
+        &self,
+        unknowns: &[Unknown],
+        at: &[f64],
+        finer: i64,
+    ) -> Result<Vec<f64>, ExplainError> {
+        let model = self.with_effects(unknowns, at);
+        let step = Time(self.step.0 / finer);
+        let mut readings = Vec::with_capacity(self.samples.len());
+        for (index, run) in self.runs.iter().enumerate() {
+            let tracks = self.simulate(&model, index, step, unknowns, at)?;
+            for (sensor, track) in
+                tracks.iter().enumerate().filter(|(_, track)| !track.time_s.is_empty())
+            {
+                let offsets = self.of_sensor(sensor, unknowns, at);
+                let lag_s = self.sensors.sensor[sensor].lag_s + offsets.lag_s;
+                let behind = lagged(track, lag_s);
+                let times = run.tracks[sensor].time_s.iter();
+                readings.extend(
+                    times.map(|t| offsets.gain * behind.at(t + offsets.clock_s) + offsets.bias),
+                );
+            }
+        }
+        Ok(readings)
+    }
+
+    /// Mean of the temperatures that a run reads first, and how far they lie from it, K.
+    pub fn first_k(&self, run: usize) -> Option<(f64, f64)> {
+        let tracks = self.runs[run].tracks.iter().zip(&self.sensors.sensor);
+        let first =
+            tracks.filter(|(_, sensor)| sensor.si() == "k").map(|(track, _)| track.value[0]);
+        let first: Vec<f64> = first.collect();
+        let mean = first.iter().sum::<f64>() / first.len() as f64;
+        let far = first.iter().fold(0.0_f64, |far, t| far.max((t - mean).abs()));
+        (!first.is_empty()).then_some((mean, far))
+    }
+
+    fn with_effects(&self, unknowns: &[Unknown], at: &[f64]) -> Model {
+        let mut fields: Vec<(&'static str, &str, Map<String, Value>)> = Vec::new();
+        for (unknown, coordinate) in unknowns.iter().zip(at) {
+            let Target::Effect { id, component, field } = &unknown.target else { continue };
+            let value = Value::from(unknown.value(*coordinate));
+            match fields.iter_mut().find(|(i, c, _)| i == id && c == component) {
+                Some((.., map)) => drop(map.insert((*field).to_owned(), value)),
+                None => {
+                    fields.push((id, component, Map::from_iter([((*field).to_owned(), value)])))
+                }
+            }
+        }
+        let mut model = self.model.clone();
+        for (id, component, map) in fields {
+            if let Some(Ok(params)) = EffectParams::deserialize(id, Value::Object(map)) {
+                let (component, place) = (component.to_owned(), Place::default());
+                model.effects.push(EffectSpec { component, params, provenance: Map::new(), place });
+            }
+        }
+        model
+    }
+
+    /// Every compared quantity over a run; empty for inputs.
+    fn simulate(
+        &self,
+        model: &Model,
+        index: usize,
+        step: Time,
+        unknowns: &[Unknown],
+        at: &[f64],
+    ) -> Result<Vec<Track>, ExplainError> {
+        let (mut model, run) = (model.clone(), &self.runs[index]);
+        let begin_s = run.span_s.0;
+        let rows = ((run.span_s.1 - begin_s) / step.as_s()).ceil() as usize + 1;
+        for (i, sensor) in self.sensors.sensor.iter().enumerate() {
+            let track = &run.tracks[i];
+            if sensor.role == Role::Input {
+                let offsets = self.of_sensor(i, unknowns, at);
+                // A step takes its signals as they are at its end; of a measured quantity its middle counts.
+                let measured = |k: usize| {
+                    let middle_s = (k as f64 - 0.5).max(0.0) * step.as_s();
+                    (track.at(begin_s + middle_s - offsets.clock_s) - offsets.bias) / offsets.gain
+                };
+                model.drivers.retain(|driver| driver.signal != sensor.signal);
+                model.drivers.push(DriverSpec {
+                    signal: sensor.signal.as_str().into(),
+                    unit: None,
+                    interpolation: Interpolation::Linear,
+                    times_s: (0..=rows).map(|k| k as f64 * step.as_s()).collect(),
+                    values: (0..=rows).map(measured).collect(),
+                    source: sensor.column.as_str().into(),
+                    place: Place::default(),
+                });
+            }
+        }
+        if let Some((mean_k, _)) = self.first_k(index) {
+            let offset = |(unknown, at): (&Unknown, &f64)| match unknown.target {
+                Target::Initial(of) if of == index => unknown.value(*at),
+                _ => 0.0,
+            };
+            model.run.initial_k = mean_k + unknowns.iter().zip(at).map(offset).sum::<f64>();
+        }
+        let plan = build(&model).map_err(ExplainError::Model)?;
+        let mut simulation = Simulation::new(plan)?;
+        let channels = self.sensors.sensor.iter().map(|sensor| match sensor.role {
+            Role::Compare => simulation.channel(&sensor.signal).map(Some),
+            Role::Input => Ok(None),
+        });
+        let channels: Vec<Option<ChannelId>> = channels.collect::<Result<_, RunError>>()?;
+        let none = Track { time_s: Vec::new(), value: Vec::new() };
+        let mut tracks = vec![none; channels.len()];
+        for k in 0..=rows {
+            if k > 0 {
+                simulation.advance_to(Time(step.0 * k as i64), step)?;
+            }
+            for ((track, channel), sensor) in
+                tracks.iter_mut().zip(&channels).zip(&self.sensors.sensor)
+            {
+                let Some(channel) = channel else { continue };
+                let middle_s = if sensor.si() == "k" && k > 0 { 0.5 * step.as_s() } else { 0.0 };
+                track.time_s.push(begin_s + step.as_s() * k as f64 - middle_s);
+                track.value.push(simulation.get(*channel));
+            }
+        }
+        Ok(tracks)
+    }
+
+    fn of_sensor(&self, sensor: usize, unknowns: &[Unknown], at: &[f64]) -> Offsets {
+        let mut offsets = Offsets { bias: 0.0, gain: 1.0, lag_s: 0.0, clock_s: 0.0 };
+        for (unknown, coordinate) in unknowns.iter().zip(at) {
+            let value = unknown.value(*coordinate);
+            match unknown.target {
+                Target::Bias(i) if i == sensor => offsets.bias += value,
+                Target::Gain(i) if i == sensor => offsets.gain *= value,
+                Target::Lag(i) if i == sensor => offsets.lag_s += value,
+                Target::Clock(i) if i == sensor => offsets.clock_s += value,
+                _ => {}
+            }
+        }
+        offsets
+    }
+}
+
+/// What a sensor makes of its quantity.
+struct Offsets {
+    bias: f64,
+    gain: f64,
+    lag_s: f64,
+    clock_s: f64,
+}
+
+/// The SI suffix of a quantity's name.
+fn suffix(quantity: &str) -> &str {
+    let ends = |si: &&&str| quantity.strip_suffix(**si).is_some_and(|rest| rest.ends_with('_'));
+    anergy_core::units::SI_SUFFIXES.iter().find(ends).copied().unwrap_or("")
+}
+
+/// Behind a first-order lag: exact for a quantity that is straight between its points.
+fn lagged(track: &Track, lag_s: f64) -> Track {
+    if lag_s <= 0.0 {
+        return track.clone();
+    }
+    let mut value = Vec::with_capacity(track.value.len());
+    value.push(track.value[0]);
+    for i in 1..track.value.len() {
+        let dt = track.time_s[i] - track.time_s[i - 1];
+        let slope = (track.value[i] - track.value[i - 1]) / dt;
+        // y follows x = x0 + s t: y = x - s tau + (y0 - x0 + s tau) exp(-t/tau).
+        let rest = value[i - 1] - track.value[i - 1] + slope * lag_s;
+        value.push(track.value[i] - slope * lag_s + rest * (-dt / lag_s).exp());
+    }
+    Track { time_s: track.time_s.clone(), value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lag_by_hand() {
+        // A ramp of 1 K/s behind 10 s, after 10 s: 10 - 10 (1 - 1/e) = 3.6788 K.
+        let times: Vec<f64> = (0..=10).map(f64::from).collect();
+        let ramp = Track { value: times.clone(), time_s: times };
+        assert!((lagged(&ramp, 10.0).value[10] - 3.678_794).abs() < 1e-6);
+        assert_eq!(lagged(&ramp, 0.0), ramp);
+    }
+}
