@@ -25,9 +25,11 @@ struct Arguments {
 enum Command {
     /// Run the embedded three-house study: progress, key results, results.mcap, summary.json, report.html
     Demo {
-        /// Folder for the results
-        #[arg(long, value_name = "DIR", default_value = "results/demo")]
-        out: PathBuf,
+        /// Show something else
+        show: Option<commands::demo::Show>,
+        /// Folder for the results (default: results/demo, or results/demo-explain)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// Run a model over time
     Run {
@@ -171,7 +173,7 @@ enum ImportFormat {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Demo { out } => commands::demo::demo(&out),
+        Command::Demo { show, out } => commands::demo::demo(show, out.as_deref()),
         Command::Run { model, until, step, record, out } => {
             commands::run::run(&model, [until, step, record], out.as_deref())
         }

@@ -172,7 +172,7 @@ impl Experiment {
             match fields.iter_mut().find(|(i, c, _)| i == id && c == component) {
                 Some((.., map)) => drop(map.insert((*field).to_owned(), value)),
                 None => {
-                    fields.push((id, component, Map::from_iter([((*field).to_owned(), value)])))
+                    fields.push((id, component, Map::from_iter([((*field).to_owned(), value)])));
                 }
             }
         }

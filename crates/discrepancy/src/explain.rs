@@ -12,15 +12,17 @@ use crate::unknown::{Estimate, Target, Unknown};
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// Evidence of residuals that are not quite what they are taken for speaks too loudly: it is divided by this. With 5, the
+/// Evidence of residuals that are not quite what they are taken for speaks too loudly: it is divided by this. With 8, the
 /// two records of the pipe of Liege name its wall, and each one alone leaves wall and slow sensor as a class.
-const TEMPERATURE: f64 = 5.0;
+const TEMPERATURE: f64 = 8.0;
 /// Evidence by which an effect must beat the model without it, nats.
 const WINS: f64 = 4.0;
 /// Evidence within which two effects are not told apart, nats.
 const TOGETHER: f64 = 3.0;
 /// And within which factor of the best their residuals on samples that were not fitted lie.
 const AS_WELL: f64 = 1.5;
+/// Values within so many standard deviations of what is plausible are equally so.
+const PLAUSIBLE: f64 = 2.0;
 /// Sensitivities whose directions agree better than this are not told apart.
 const PARALLEL: f64 = 0.99;
 /// The least reduction of the error on samples that were not fitted.
@@ -225,7 +227,11 @@ pub fn explain(
                         class.push(f.clone());
                     }
                 }
-                class.sort_by(|a, b| a.strain.total_cmp(&b.strain));
+                // What is far from plausible goes last; of the rest the evidence decides.
+                let far = |f: &Finding| f.strain.max(PLAUSIBLE);
+                class.sort_by(|a, b| {
+                    far(a).total_cmp(&far(b)).then(b.evidence.total_cmp(&a.evidence))
+                });
             }
             let excess = |z: f64| (z * z - 1.0).max(0.0);
             let explained = 1.0 - excess(winner.validation_z) / excess(null_z).max(1e-9);
@@ -253,7 +259,7 @@ pub fn explain(
                 (
                     Verdict::Named,
                     format!(
-                        "p = {:.2}, {:.0} nats more evidence than without",
+                        "its probability is {:.2}, with {:.0} nats more evidence than the model without it",
                         winner.probability, winner.evidence
                     ),
                 )

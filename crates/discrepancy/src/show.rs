@@ -149,7 +149,8 @@ fn digits(x: f64) -> String {
     format!("{x:.places$}")
 }
 
-fn upper(text: &str) -> String {
+/// With a capital letter.
+pub fn upper(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -84,7 +84,7 @@ pub fn cosine(a: &Tried, b: &Tried) -> f64 {
         let mut column = tried.fit.sensitivity.column(tried.place).into_owned();
         let others = tried.fit.sensitivity.columns(0, tried.place);
         if let Ok(inverse) = (others.tr_mul(&others)).pseudo_inverse(1e-12) {
-            column -= &others * (inverse * others.tr_mul(&column));
+            column -= others * (inverse * others.tr_mul(&column));
         }
         column
     };

@@ -11,6 +11,7 @@ use anergy_discrepancy::explain::explain as compare;
 use anergy_discrepancy::sensors::SensorFile;
 use anergy_discrepancy::show;
 use anergy_discrepancy::split::{SplitFile, Use};
+use anergy_simulation::model::Model;
 use std::path::{Path, PathBuf};
 
 /// What is compared, and where the result goes.
@@ -61,20 +62,49 @@ fn revert(path: &Path, id: &str) -> Result<(), Failure> {
 
 fn find(
     path: &Path,
-    data_file: &Path,
-    sensor_file: &Path,
-    split_file: Option<&Path>,
+    data: &Path,
+    sensors: &Path,
+    split: Option<&Path>,
     out: &Path,
 ) -> Result<(), Failure> {
     let (text, model) = read_model(path)?;
-    let sensors = SensorFile::from_toml(&read(sensor_file)?).map_err(failed)?;
-    let runs = data::read(&read(data_file)?, &sensors).map_err(failed)?;
-    let split = split_file.map(|file| read(file)).transpose()?;
-    let split = split.map(|text| SplitFile::from_toml(&text)).transpose().map_err(failed)?;
+    let stem = path.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy());
+    let case = Case {
+        text: &text,
+        file: &path.display().to_string(),
+        stem: &stem,
+        data: &read(data)?,
+        sensors: &read(sensors)?,
+        split: split.map(read).transpose()?,
+    };
+    find_in(model, &case, out)
+}
+
+/// Texts of a comparison.
+pub struct Case<'a> {
+    /// The model file.
+    pub text: &'a str,
+    /// Its name.
+    pub file: &'a str,
+    /// Its name without folder and ending.
+    pub stem: &'a str,
+    /// The table of measurements.
+    pub data: &'a str,
+    /// The sensor file.
+    pub sensors: &'a str,
+    /// The split file.
+    pub split: Option<String>,
+}
+
+/// Explains, prints what was found and writes it into a folder.
+pub fn find_in(model: Model, case: &Case<'_>, out: &Path) -> Result<(), Failure> {
+    let sensors = SensorFile::from_toml(case.sensors).map_err(failed)?;
+    let runs = data::read(case.data, &sensors).map_err(failed)?;
+    let split = case.split.as_deref().map(SplitFile::from_toml).transpose().map_err(failed)?;
     let name = model.name.clone();
     let model_failed = |error: ExplainError| match error {
         ExplainError::Model(problems) => {
-            Failure::Model { problems, file: path.display().to_string(), text: text.clone() }
+            Failure::Model { problems, file: case.file.to_owned(), text: case.text.to_owned() }
         }
         other => failed(other),
     };
@@ -86,7 +116,7 @@ fn find(
     write(&out.join("report.json"), &(json.map_err(|e| Failure::File(e.to_string()))? + "\n"))?;
     write(&out.join("report.md"), &show::markdown(&title, &found))?;
     write(&out.join("report.html"), &show::html(&title, &experiment, &found))?;
-    line!("{} {}.", found.verdict.sentence(), found.because);
+    line!("{} {}.", found.verdict.sentence(), show::upper(&found.because));
     for problem in &found.problems {
         line!("  {problem}");
     }
@@ -110,9 +140,8 @@ fn find(
         );
     }
     if found.effects.iter().any(|effect| !effect.of_sensor()) {
-        let stem = path.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy());
-        let explained = out.join(format!("{stem}.explained.toml"));
-        write(&explained, &added(&text, &found.effects, &found.because))?;
+        let explained = out.join(format!("{}.explained.toml", case.stem));
+        write(&explained, &added(case.text, &found.effects, &found.because))?;
         line!("\nthe model with what was missing: {}", explained.display());
     }
     line!("\nresults in {}: report.html, report.md, report.json", out.display());
