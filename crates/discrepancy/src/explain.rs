@@ -19,7 +19,7 @@ const TEMPERATURE: f64 = 8.0;
 const WINS: f64 = 4.0;
 /// Evidence within which two effects are not told apart, nats.
 const TOGETHER: f64 = 3.0;
-/// And within which factor of the best their residuals on samples that were not fitted lie.
+/// Effects whose residuals on samples that were not fitted are so many times those of the best are refuted.
 const AS_WELL: f64 = 1.5;
 /// Values within so many standard deviations of what is plausible are equally so.
 const PLAUSIBLE: f64 = 2.0;
@@ -189,13 +189,18 @@ pub fn explain(
         likelihood.noise = likelihood.noise_of(experiment, &best.fit.readings);
         let null = fit(experiment, &base, &likelihood)?;
         let mut tried = fits(experiment, &base, &all, &open, &likelihood, &rough)?;
-        tried.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        // What does badly on samples that were not fitted is refuted, however well it was fitted.
+        let own_z = |t: &Tried| z(&likelihood, &t.fit.readings, &validated);
+        let least = tried.iter().map(own_z).fold(f64::INFINITY, f64::min);
+        let refuted = |t: &Tried| own_z(t) > AS_WELL * least;
+        tried.sort_by(|a, b| {
+            let evidence = || b.fit.log_evidence.total_cmp(&a.fit.log_evidence);
+            refuted(a).cmp(&refuted(b)).then_with(evidence)
+        });
         let here_z = z(&likelihood, &null.readings, &validated);
-        let total: f64 = tried
-            .iter()
-            .map(|t| tempered(t.fit.log_evidence - tried[0].fit.log_evidence).exp())
-            .chain([tempered(null.log_evidence - tried[0].fit.log_evidence).exp()])
-            .sum();
+        let over = |log_evidence: f64| tempered(log_evidence - tried[0].fit.log_evidence).exp();
+        let open = tried.iter().filter(|t| !refuted(t)).map(|t| over(t.fit.log_evidence));
+        let total = open.sum::<f64>() + over(null.log_evidence);
         let finding = |t: &Tried| {
             let candidate = &all[t.candidate];
             Finding {
@@ -206,7 +211,7 @@ pub fn explain(
                 unit: candidate.parameter.1,
                 estimate: t.fit.estimate(&t.unknowns, t.place),
                 beside: values_beside(candidate, &t.unknowns, &t.fit.at),
-                probability: tempered(t.fit.log_evidence - tried[0].fit.log_evidence).exp() / total,
+                probability: if refuted(t) { 0.0 } else { over(t.fit.log_evidence) / total },
                 evidence: tempered(t.fit.log_evidence - null.log_evidence),
                 strain: candidate.strain(t.fit.at[t.place]),
                 validation_z: z(&likelihood, &t.fit.readings, &validated),
@@ -221,9 +226,8 @@ pub fn explain(
             if wins {
                 for (t, f) in tried.iter().zip(&findings) {
                     let behind = winner.evidence - f.evidence;
-                    let as_well = f.validation_z < AS_WELL * winner.validation_z;
                     let parallel = behind < 2.0 * TOGETHER && cosine(&tried[0], t) > PARALLEL;
-                    if as_well && (behind < TOGETHER || parallel) {
+                    if !refuted(t) && (behind < TOGETHER || parallel) {
                         class.push(f.clone());
                     }
                 }

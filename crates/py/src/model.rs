@@ -1,5 +1,6 @@
 //! `anergy.Model`: a model file, loaded.
 
+mod explain;
 mod parameters;
 mod stability;
 mod text;

@@ -38,6 +38,7 @@ from anergy.errors import (
     SnapshotError,
     UnknownNameError,
 )
+from anergy.explanation import Explanation, explain
 from anergy.stability import BlockingMap, Mode, Stability
 from anergy.steady import Steady, Table
 
@@ -49,6 +50,7 @@ __all__ = [
     "BlockingMap",
     "Controller",
     "ConvergenceError",
+    "Explanation",
     "Grid",
     "Handle",
     "Handles",
@@ -69,6 +71,7 @@ __all__ = [
     "UnknownNameError",
     "__version__",
     "examples",
+    "explain",
     "schema",
 ]
 
