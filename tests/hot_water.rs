@@ -192,6 +192,11 @@ fn three_installations_with_the_same_draws() {
             a.1
         );
     }
+    // What docs/src/domestic-hot-water.md says.
+    for (name, back_degc, expected_degc) in [("a", a.0, 7.3), ("b", b.0, 32.1), ("c", c.0, 31.8)] {
+        let off_k: f64 = back_degc - expected_degc;
+        assert!(off_k.abs() < 0.5, "{name}: {back_degc:.2} degC, documented {expected_degc}");
+    }
     // The external exchanger sends the coldest water back.
     assert!(a.0 < b.0 && a.0 < c.0, "a {:.1}, b {:.1}, c {:.1} degC", a.0, b.0, c.0);
     assert!(a.0 < 20.0, "{:.1}", a.0);

@@ -9,8 +9,9 @@
 //! **Joining** The ends of a line are the nodes it names (`from`, `to`), else the nearest point within the
 //! tolerance, else the ends of other lines within the tolerance, which become one new node.
 //!
-//! **Positions** Metres east and north of the middle of the map on its local sphere: good for drawing,
-//! 1e-4 of the distance to the middle within 10 km. Nothing is computed from them.
+//! **Positions** Metres east and north of the middle of the map by the radii of curvature of the ellipsoid there
+//! (`anergy_core::local_plane`): good for drawing, 1e-3 of the distance within 10 km at middle latitudes. No lengths
+//! are taken from them; whether ends are one node, within metres of each other, is.
 //!
 //! **Sources** rfc7946, karney2013.
 
