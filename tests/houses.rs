@@ -216,8 +216,11 @@ fn a_winter_day_closes_and_is_comfortable() {
 
 #[test]
 fn steps_of_a_minute_and_of_a_quarter_of_an_hour_agree() {
+    // Without circulation, which takes nothing from water that has become too cold: the taps count as discomfort what
+    // they lack, the circulation does not.
+    let house = HOUSE.replace("circulation_loss_w = 150", "circulation_loss_w = 0");
     let energies = |step_s: f64| {
-        let mut simulation = simulation(&(AROUND.to_owned() + HOUSE));
+        let mut simulation = simulation(&(AROUND.to_owned() + &house));
         advance(&mut simulation, 86_400.0, step_s);
         assert!(Balances::of(&simulation).units_error() < 1e-9);
         let of = |name: &str| get(&simulation, &format!("h.{name}"));

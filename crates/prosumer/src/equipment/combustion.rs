@@ -148,9 +148,11 @@ impl Combustion {
         let return_k = state[RETURN_K];
         let limits = &self.limits;
         let inside_k = if state[TRIPPED] != 0.0 { limits.restart_k } else { 0.0 };
-        let tripped = return_k > limits.return_max_k - inside_k
-            || state[SUPPLY_K] > limits.supply_max_k - inside_k;
         let enabled = signals.get(ENABLE) >= 0.5;
+        // One that is off does not trip, however warm its water is.
+        let tripped = enabled
+            && (return_k > limits.return_max_k - inside_k
+                || state[SUPPLY_K] > limits.supply_max_k - inside_k);
         let (modulation, overshot) = self.load(signals, state);
         let run = |stage: &Stage, at: usize, modulation: f64| {
             let mut next = BurnerState::read(&state[at..]);

@@ -135,7 +135,14 @@ impl DomesticHotWater {
         }
         let tap_kg_s = volume_m3 * density / span_s;
         let share = drawing_s / span_s;
-        let circulation_w = p.circulation_loss_w * signals.get(CIRCULATION).clamp(0.0, 1.0);
+        // Water that arrives colder than the circulation comes back has nothing to give.
+        let back_k = match p.heated_by {
+            HeatedBy::Exchanger => set_k - CIRCULATION_K,
+            HeatedBy::Passing => cold_k,
+        };
+        let able = ((arrives_k - back_k) / CIRCULATION_K).clamp(0.0, 1.0);
+        let runs = signals.get(CIRCULATION).clamp(0.0, 1.0);
+        let circulation_w = p.circulation_loss_w * runs * able;
         let mut plan = Plan {
             tap_kg_s,
             share,
@@ -157,7 +164,10 @@ impl DomesticHotWater {
                     heat_w += part * w;
                 }
                 if state[OWED_J].abs() > LEAST_J && arrives_k > cold_k + CIRCULATION_K {
-                    let owed_w = (state[OWED_J] / span_s).max(-heat_w);
+                    // The pump gives no more than it can; the rest stays owed.
+                    let most_w = self.exchanger.most_w_k * (arrives_k - cold_k);
+                    let owed_w =
+                        (state[OWED_J] / span_s).clamp(-heat_w, (most_w - heat_w).max(0.0));
                     heat_w += owed_w;
                     flow_w_k = (flow_w_k + owed_w / (arrives_k - cold_k)).max(0.0);
                 }
@@ -169,7 +179,8 @@ impl DomesticHotWater {
                 let hot_share = if warmer_k > lift_k { lift_k / warmer_k } else { 1.0 };
                 let mut hot_kg_s = tap_kg_s * hot_share.max(0.0);
                 if state[OWED_J].abs() > LEAST_J && warmer_k > lift_k {
-                    hot_kg_s += state[OWED_J] / (span_s * cp * warmer_k);
+                    let owed_kg_s = state[OWED_J] / (span_s * cp * warmer_k);
+                    hot_kg_s += owed_kg_s.min(MAKING_UP_M3_S * density);
                     hot_kg_s = hot_kg_s.max(0.0);
                 }
                 plan.m_flow_kg_s = hot_kg_s + circulation_kg_s;

@@ -101,6 +101,10 @@ impl ElectricVehicleParams {
         if self.arrival_s > DAY_S {
             return out_of_range("arrival_s", self.arrival_s, "must lie between 0 and 24 h");
         }
+        if 4.0 * self.arrival_deviation_s > 0.5 * DAY_S {
+            let requirement = "must not be above 3 h";
+            return out_of_range("arrival_deviation_s", self.arrival_deviation_s, requirement);
+        }
         if self.daily_j > 0.5 * DAY_S * self.charging_w {
             return out_of_range("daily_j", self.daily_j, "must be charged within 12 h");
         }
@@ -116,8 +120,8 @@ impl ElectricVehicleParams {
         let length_s = self.daily_j / self.charging_w;
         let span_s = until_s - from_s;
         let mut charging_s = 0.0;
-        // The day before may still be charging; a span reaches into its last day.
-        for ahead in -1..=((time_s + span_s) / DAY_S) as i64 {
+        // The day before may still be charging, and the day after arrive before midnight.
+        for ahead in -2..=((time_s + span_s) / DAY_S) as i64 + 1 {
             let chance = normal(self.seed, day + ahead, 0).clamp(-4.0, 4.0);
             let arrives_s =
                 ahead as f64 * DAY_S + self.arrival_s + self.arrival_deviation_s * chance;
@@ -200,6 +204,18 @@ mod tests {
             assert!((out[1] - 80.0 * 3.6e6).abs() < 1.0, "{dt_s} s: {out:?}");
             assert!(dt_s > 900.0 || (most_w - 11_000.0).abs() < 1e-6);
         }
+        // Who arrives about midnight arrives before it every other day: the same energy whatever the step.
+        let night = ElectricVehicleParams { arrival_s: 0.0, ..params.clone() };
+        let unit = night.build(&Medium::default()).unwrap();
+        let charged = |dt_s: f64| {
+            let (mut state, mut out) = (unit.initial_state(0.0), [0.0; 2]);
+            for _ in 0..(10.0 * DAY_S / dt_s) as usize {
+                unit.advance(dt_s, &Signals(&[19_358.0 * DAY_S]), &[], &mut state, &mut out);
+            }
+            out[1]
+        };
+        let (fine, coarse) = (charged(60.0), charged(3600.0));
+        assert!((fine - coarse).abs() < 1.0 && fine > 70.0 * 3.6e6, "{fine} {coarse}");
         let wrong = ElectricVehicleParams { daily_j: 1e12, ..params };
         assert_eq!(wrong.build(&Medium::default()).unwrap_err().field(), Some("daily_j"));
     }

@@ -92,7 +92,10 @@ impl ThermalUnit for GridConnection {
         state[2] += dt_s * signals.get(1);
         let [import_j, export_j, generated_j] = [state[0], state[1], state[2]];
         let consumed_j = import_j - export_j + generated_j;
-        let kept = |part_j: f64, of_j: f64| if of_j > 0.0 { 1.0 - part_j / of_j } else { 0.0 };
+        // A battery may export more than is generated.
+        let kept = |part_j: f64, of_j: f64| {
+            if of_j > 0.0 { (1.0 - part_j / of_j).clamp(0.0, 1.0) } else { 0.0 }
+        };
         let shares = [kept(export_j, generated_j), kept(import_j, consumed_j)];
         out.copy_from_slice(&[grid_w, import_j, export_j, shares[0], shares[1]]);
         Exchange::default()

@@ -237,12 +237,15 @@ impl ThermalUnit for MixingStation {
         let held_w = if state[STEP_S] > 0.0 { state[HELD_J] / state[STEP_S] } else { 0.0 };
         let heat_w = (capacity_w_k(&self.medium, mixed_kg_s) * lift_k - held_w).max(0.0);
         wanted[STORAGE] = if lift_k > LEAST_K {
+            let m_flow_kg_s = heat_w / (lift_k * self.medium.heat_capacity_j_kg_k);
+            // No more than the heating passes; what is still held is evened out later.
             PortRequest {
-                m_flow_kg_s: heat_w / (lift_k * self.medium.heat_capacity_j_kg_k),
+                m_flow_kg_s: m_flow_kg_s.min(flow_kg_s),
                 outlet: Outlet::Cooled { wanted_w: heat_w, coldest_k: state[RETURN_K] },
             }
         } else {
-            PortRequest { m_flow_kg_s: mixed_kg_s, outlet: Outlet::HeatFlow(0.0) }
+            // Water of a storage that is colder than the return: what leaves the heating goes into the storage.
+            PortRequest { m_flow_kg_s: mixed_kg_s, outlet: Outlet::Temperature(state[RETURN_K]) }
         };
         wanted[HEATING].outlet = mixed(share, state[STORAGE_K]);
     }
@@ -327,6 +330,7 @@ mod tests {
             let m_flow_kg_s = wanted[0].m_flow_kg_s;
             let q_w = match wanted[0].outlet {
                 Outlet::Cooled { wanted_w, .. } => -wanted_w,
+                Outlet::Temperature(t_k) => m_flow_kg_s * 4180.0 * (t_k - ports[0].t_in_k),
                 _ => 0.0,
             };
             ports[0].m_flow_kg_s = m_flow_kg_s;
@@ -341,7 +345,10 @@ mod tests {
             let held_w = (unit.stored_j(&state) - before_j) / dt_s;
             let heating_w = 0.2 * 4180.0 * (ports[1].t_out_k - ports[1].t_in_k);
             assert!((held_w + q_w + heating_w).abs() < 1e-6, "{held_w} {q_w} {heating_w}");
-            assert!(ports[1].t_out_k <= ports[0].t_in_k + 1e-9, "T_mix <= T_in");
+            let most_j = 0.2 * 4180.0 * 45.0 * dt_s;
+            assert!(unit.stored_j(&state).abs() < most_j, "no store: {} J", unit.stored_j(&state));
+            let warmest_k = ports[0].t_in_k.max(ports[1].t_in_k);
+            assert!(ports[1].t_out_k <= warmest_k + 1e-9, "never warmer than storage and return");
         }
         (ports[1].t_out_k - 273.15, ports[0].m_flow_kg_s)
     }
@@ -350,7 +357,7 @@ mod tests {
     fn a_curve_by_hand() {
         let unit = station(&MixingStationParams::default());
         let set = |outdoor_degc: f64| unit.set_k(&Signals(&[outdoor_degc + 273.15])) - 273.15;
-        // -14 degC: 60; 2 degC: 21 + 39 (19/35)^(1/1.3) = 21 + 39 * 0.62504 = 45.38; 30 degC: the least, 20.
+        // -14 degC: 60; 2 degC: 21 + 39 (19/35)^(1/1.3) = 21 + 39 * 0.62504 = 45.38; 30 degC: the room, 21.
         assert!((set(-14.0) - 60.0).abs() < 1e-9);
         assert!((set(2.0) - 45.38).abs() < 0.01, "{}", set(2.0));
         assert!((set(21.0) - 21.0).abs() < 1e-9 && (set(30.0) - 21.0).abs() < 1e-9);
@@ -366,6 +373,9 @@ mod tests {
             assert!((flow - 0.2 * 0.3845).abs() < 1e-4, "{flow}");
             let (supply, flow) = mixed(&unit, 2.0, 40.0, dt_s);
             assert!((supply - 40.0).abs() < 1e-9 && (flow - 0.2).abs() < 1e-12);
+            // A storage colder than the return: its water heats nothing, and nothing is held.
+            let (supply, flow) = mixed(&unit, 2.0, 25.0, dt_s);
+            assert!((supply - 25.0).abs() < 1e-9 && (flow - 0.2).abs() < 1e-12);
             // A return that is warmer than the set: only the return.
             let (supply, flow) = mixed(&unit, 19.0, 70.0, dt_s);
             assert!((supply - 30.0).abs() < 1e-9 && flow == 0.0);

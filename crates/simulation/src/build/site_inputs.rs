@@ -26,11 +26,15 @@ pub(super) fn find(plan: &mut Plan, writers: &HashMap<SignalId, Writer>) {
                 SITE_ELECTRICITY => (electricity(plan, unit), 2),
                 SITE_GRID => (electricity(plan, unit), 3),
                 _ => match follows.strip_prefix(OF_SITE) {
-                    Some(output) => (outputs(plan, unit, output), 1),
+                    // Of several households the share of all people, but the heat of all their machines.
+                    Some(output) if input.max == 1.0 => {
+                        (OfSite::Mean(outputs(plan, unit, output)), 1)
+                    }
+                    Some(output) => (OfSite::Outputs(outputs(plan, unit, output)), 1),
                     None => continue,
                 },
             };
-            if of == OfSite::Outputs(Vec::new()) {
+            if matches!(&of, OfSite::Outputs(places) | OfSite::Mean(places) if places.is_empty()) {
                 continue;
             }
             found.push(SiteInput { unit, signal, of });
@@ -69,12 +73,12 @@ fn electricity(plan: &Plan, unit: usize) -> OfSite {
     }
 }
 
-fn outputs(plan: &Plan, unit: usize, name: &str) -> OfSite {
+fn outputs(plan: &Plan, unit: usize, name: &str) -> Vec<usize> {
     let places = others(plan, unit).filter_map(|other| {
         let planned = &plan.units[other];
         let outputs = planned.equipment.outputs();
         let place = outputs.iter().position(|output| output.name == name)?;
         Some(planned.outputs.start + place)
     });
-    OfSite::Outputs(places.collect())
+    places.collect()
 }

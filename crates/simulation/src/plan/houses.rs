@@ -77,6 +77,8 @@ pub(crate) struct UnitFlag {
 pub(crate) enum OfSite {
     /// One of their outputs, at these places.
     Outputs(Vec<usize>),
+    /// The mean of one of their outputs, at these places.
+    Mean(Vec<usize>),
     /// The electricity of these units and pumps.
     Electricity { units: Vec<usize>, pumps: Vec<usize> },
 }

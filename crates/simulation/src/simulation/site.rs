@@ -54,6 +54,10 @@ impl Simulation {
             }
             let value: f64 = match &input.of {
                 OfSite::Outputs(places) => places.iter().map(|i| state.unit_outputs[*i]).sum(),
+                OfSite::Mean(places) => {
+                    let sum: f64 = places.iter().map(|i| state.unit_outputs[*i]).sum();
+                    sum / places.len() as f64
+                }
                 OfSite::Electricity { units, pumps } => {
                     let units_w: f64 =
                         units.iter().map(|unit| state.unit_exchange[*unit].electric_w).sum();

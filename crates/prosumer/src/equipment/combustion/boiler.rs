@@ -142,7 +142,13 @@ pub(super) fn measured_stage(nominal_w: f64, dynamics: bool) -> Result<Stage, Un
 
 impl CondensingBoilerParams {
     fn stage(&self) -> Result<Stage, UnitError> {
-        let map = if self.table_return_k.is_empty() {
+        let columns = [
+            &self.table_return_k,
+            &self.table_efficiency,
+            &self.table_heat_min_w,
+            &self.table_heat_max_w,
+        ];
+        let map = if columns.iter().all(|column| column.is_empty()) {
             SteadyMap::Boiler { nominal_w: self.nominal_w }
         } else {
             let table = BoilerTable {

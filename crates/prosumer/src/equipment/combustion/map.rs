@@ -21,10 +21,18 @@ use anergy_core::numerics::interpolate::between_points;
 /// Range of the return temperature of the fits, degC.
 const FITTED_DEGC: (f64, f64) = (20.0, 75.0);
 
+/// By the lower heating value no boiler has more.
+const EFFICIENCY_MAX: f64 = 1.2;
+
 /// Return temperature over 35 degC, in 10 K.
 fn t_10k(return_k: f64) -> f64 {
     let degc = (return_k - ZERO_CELSIUS_K).clamp(FITTED_DEGC.0, FITTED_DEGC.1);
     (degc - 35.0) / 10.0
+}
+
+/// Share of the way from the smallest load to full load; full where there is no way between.
+fn above(m: f64, least: f64) -> f64 {
+    if least < 1.0 { ((m - least) / (1.0 - least)).clamp(0.0, 1.0) } else { 1.0 }
 }
 
 /// The temperature difference of the reference boiler over the one that is set.
@@ -80,6 +88,16 @@ impl BoilerTable {
             if let Some(value) = column.iter().find(|value| !value.is_finite() || **value <= 0.0) {
                 return within(field, format!("{field}: {value} must be positive"));
             }
+        }
+        if let Some(value) = self.efficiency.iter().find(|value| **value > EFFICIENCY_MAX) {
+            let problem = format!("table_efficiency: {value} is no efficiency; 97 % is 0.97");
+            return within("table_efficiency", problem);
+        }
+        if self.return_k.is_empty() {
+            return within(
+                "table_return_k",
+                "the other columns of the table are missing their table_return_k".into(),
+            );
         }
         if self.return_k.windows(2).any(|pair| pair[1] <= pair[0]) {
             return within("table_return_k", "table_return_k must rise".into());
@@ -148,16 +166,11 @@ impl SteadyMap {
             Self::Table(table) => {
                 let of = |column: &[f64]| between_points(&table.return_k, column, return_k);
                 let (least_w, most_w) = (of(&table.heat_min_w), of(&table.heat_max_w));
-                let above = (m - table.modulation_min) / (1.0 - table.modulation_min);
-                let heat_w = least_w + above.clamp(0.0, 1.0) * (most_w - least_w);
+                let heat_w = least_w + above(m, table.modulation_min) * (most_w - least_w);
                 Steady { heat_w, fuel_w: heat_w / of(&table.efficiency), power_w: 0.0 }
             }
             Self::Engine { power_w, modulation_min, electric: (least, most), total } => {
-                let above = if *modulation_min < 1.0 {
-                    ((m - modulation_min) / (1.0 - modulation_min)).clamp(0.0, 1.0)
-                } else {
-                    1.0
-                };
+                let above = above(m, *modulation_min);
                 let fit = 0.8608 + 0.0057 * m + t * (-0.0951 + 0.0255 * m + 0.0089 * t);
                 engine(m * power_w, least + above * (most - least), total * fit)
             }

@@ -229,8 +229,20 @@ fn a_table_replaces_the_map() {
     bench.signals[MODULATION] = 0.6;
     bench.step(60.0);
     assert!((bench.out("q_flow_w") - 9552.5).abs() < 1e-6);
-    let short = CondensingBoilerParams { table_efficiency: vec![1.0], ..params };
+    // On or off only: full load.
+    let on_off = CondensingBoilerParams { modulation_min: 1.0, ..params.clone() };
+    let mut bench = Bench::new(on_off.build(&water()), 45.0);
+    bench.step(60.0);
+    assert!((bench.out("q_flow_w") - 16_205.0).abs() < 1e-6);
+    let short = CondensingBoilerParams { table_efficiency: vec![1.0], ..params.clone() };
     assert_eq!(short.build(&water()).unwrap_err().field(), Some("table_efficiency"));
+    let percent = CondensingBoilerParams { table_efficiency: vec![97.0; 5], ..params };
+    assert_eq!(percent.build(&water()).unwrap_err().field(), Some("table_efficiency"));
+    let alone = CondensingBoilerParams {
+        table_efficiency: vec![0.97],
+        ..CondensingBoilerParams::default()
+    };
+    assert!(alone.build(&water()).is_err(), "a table without its temperatures is not ignored");
 }
 
 /// Full load and 35 degC: fuel 1900/0.24 = 7917 W, total 0.8608 + 0.0057 = 0.8665, heat 7917 * 0.6265 = 4960 W.
