@@ -215,6 +215,21 @@ fn a_winter_day_closes_and_is_comfortable() {
 }
 
 #[test]
+fn the_building_of_two_households_sees_the_mean_of_their_presence() {
+    let second = "[[unit]]\nsite = \"h\"\nname = \"flat\"\nkind = \"household\"\nseed = 77\n";
+    let mut simulation = simulation(&(AROUND.to_owned() + HOUSE + second));
+    let mut apart = 0.0_f64;
+    for _ in 0..24 {
+        advance(&mut simulation, 3600.0, 3600.0);
+        let at = |unit: &str| get(&simulation, &format!("h.{unit}.presence"));
+        let mean_w = 6.0 * 110.0 * 0.5 * (at("household") + at("flat"));
+        assert!((get(&simulation, "h.building.internal_w") - mean_w).abs() < 1e-9);
+        apart = apart.max((at("household") - at("flat")).abs());
+    }
+    assert!(apart > 0.01, "the two are not the same");
+}
+
+#[test]
 fn steps_of_a_minute_and_of_a_quarter_of_an_hour_agree() {
     // Without circulation, which takes nothing from water that has become too cold: the taps count as discomfort what
     // they lack, the circulation does not.

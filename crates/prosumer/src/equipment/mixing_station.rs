@@ -27,6 +27,9 @@ use serde::{Deserialize, Serialize};
 /// Storage and return that differ by less cannot be told apart, K.
 const LEAST_K: f64 = 0.01;
 
+/// What is held flows within so many times the flow of the heating.
+const EVENING_OUT: f64 = 3.0;
+
 /// Where the set temperature comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -238,9 +241,9 @@ impl ThermalUnit for MixingStation {
         let heat_w = (capacity_w_k(&self.medium, mixed_kg_s) * lift_k - held_w).max(0.0);
         wanted[STORAGE] = if lift_k > LEAST_K {
             let m_flow_kg_s = heat_w / (lift_k * self.medium.heat_capacity_j_kg_k);
-            // No more than the heating passes; what is still held is evened out later.
+            // Not much more than the heating passes; what is still held is evened out later.
             PortRequest {
-                m_flow_kg_s: m_flow_kg_s.min(flow_kg_s),
+                m_flow_kg_s: m_flow_kg_s.min(EVENING_OUT * flow_kg_s),
                 outlet: Outlet::Cooled { wanted_w: heat_w, coldest_k: state[RETURN_K] },
             }
         } else {

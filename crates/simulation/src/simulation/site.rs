@@ -48,7 +48,9 @@ impl Simulation {
     /// Sums up the site of a unit for those of its inputs that follow it.
     fn follow_site(&mut self, unit: usize) {
         let (plan, state) = (&self.plan, &mut self.state);
-        for input in plan.site_inputs.iter().filter(|input| input.unit == unit) {
+        // In the order of the units.
+        let first = plan.site_inputs.partition_point(|input| input.unit < unit);
+        for input in plan.site_inputs[first..].iter().take_while(|input| input.unit == unit) {
             if state.taken_over[input.signal.index()] {
                 continue;
             }
