@@ -10,6 +10,7 @@ mod names;
 mod remarks;
 #[cfg(test)]
 mod tests;
+mod time_columns;
 mod times;
 
 pub use remarks::Remark;
@@ -24,9 +25,9 @@ const GAP_INTERVALS: f64 = 2.5;
 /// How a table is read; by default all of it is found out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeasuredOptions {
-    /// Between the cells; absent: that of the head with the most columns.
+    /// Between the cells; absent: what gives the head the most cells.
     pub separator: Option<char>,
-    /// The column with the time; absent: one whose name says so, else the first.
+    /// The column with the time; absent: one whose name says so, or a day and a time of day, else the first.
     pub time_column: Option<String>,
     /// What times without time zone are ahead of UTC, s.
     pub utc_offset_s: f64,

@@ -4,7 +4,7 @@ use super::place::LonLat;
 use super::properties::{self, Fields, Unknown};
 use crate::{ImportError, Note, NoteKind};
 use geojson::{Feature, GeoJson, GeometryValue, Position, feature::Id};
-use serde_json::{Map, Value};
+use serde_json::{Map, Number, Value};
 use std::collections::{BTreeMap, HashSet};
 
 /// A node.
@@ -288,7 +288,7 @@ fn own(
 fn name(properties: &Map<String, Value>, id: Option<&Id>) -> Option<String> {
     let of_feature = || match id? {
         Id::String(text) => Some(text.clone()),
-        Id::Number(number) => Some(number.to_string()),
+        Id::Number(number) => Some(digits(number)),
     };
     let property = |name: &str| properties.get(name).and_then(text);
     let name = property("id").or_else(of_feature).or_else(|| property("name"));
@@ -298,8 +298,18 @@ fn name(properties: &Map<String, Value>, id: Option<&Id>) -> Option<String> {
 fn text(value: &Value) -> Option<String> {
     match value {
         Value::String(text) => Some(text.clone()),
-        Value::Number(number) => Some(number.to_string()),
+        Value::Number(number) => Some(digits(number)),
         _ => None,
+    }
+}
+
+/// A number as a name: whole ones without decimals, since columns of floating point have 1.0 for 1.
+fn digits(number: &Number) -> String {
+    match number.as_f64() {
+        Some(value) if number.is_f64() && value.fract() == 0.0 && value.abs() < 1e15 => {
+            (value as i64).to_string()
+        }
+        _ => number.to_string(),
     }
 }
 

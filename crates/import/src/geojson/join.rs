@@ -33,6 +33,11 @@ impl Grid {
 
     /// The nearest point within reach; of equal ones the first.
     fn nearest(&self, at: LonLat) -> Option<&str> {
+        self.nearest_of(at, self.places.len())
+    }
+
+    /// The same among the first `count` points.
+    fn nearest_of(&self, at: LonLat, count: usize) -> Option<&str> {
         let place = self.plane.metres(at);
         let [east, north] = self.square(place);
         let mut best: Option<(f64, usize)> = None;
@@ -41,7 +46,7 @@ impl Grid {
                 let other = self.places[index].0;
                 let distance = (place[0] - other[0]).hypot(place[1] - other[1]);
                 let better = best.is_none_or(|found| (distance, index) < found);
-                if distance <= self.reach_m && better {
+                if index < count && distance <= self.reach_m && better {
                     best = Some((distance, index));
                 }
             }
@@ -60,7 +65,7 @@ pub(super) fn join(
     let places = network.points.iter().filter_map(|point| point.at).chain(drawn);
     let reach_m = snap_m.max(SAME_M);
     let plane = Plane::around(places);
-    ends(network, plane, reach_m)?;
+    ends(network, plane, reach_m, notes)?;
     if let Some(plane) = plane {
         near_misses(network, plane, reach_m, notes);
     }
@@ -71,7 +76,12 @@ pub(super) fn join(
 }
 
 /// The nodes at the ends of all lines; new ones where there are none.
-fn ends(network: &mut Network, plane: Option<Plane>, reach_m: f64) -> Result<(), Vec<ImportError>> {
+fn ends(
+    network: &mut Network,
+    plane: Option<Plane>,
+    reach_m: f64,
+    notes: &mut Vec<Note>,
+) -> Result<(), Vec<ImportError>> {
     let plane = plane.unwrap_or(Plane::at([0.0, 0.0]));
     let mut grid = Grid { plane, reach_m, squares: HashMap::new(), places: Vec::new() };
     let mut known: HashSet<String> = network.points.iter().map(|point| point.id.clone()).collect();
@@ -80,6 +90,7 @@ fn ends(network: &mut Network, plane: Option<Plane>, reach_m: f64) -> Result<(),
             grid.add(at, &point.id);
         }
     }
+    let drawn = grid.places.len();
     let mut new = |id: String, at: Option<LonLat>, grid: &mut Grid| {
         if let Some(at) = at {
             grid.add(at, &id);
@@ -94,6 +105,14 @@ fn ends(network: &mut Network, plane: Option<Plane>, reach_m: f64) -> Result<(),
             for (end, at) in line.ends.iter_mut().zip(places) {
                 match (end.as_ref(), at) {
                     (Some(id), at) if named && known.insert(id.clone()) => {
+                        if let Some(other) = at.and_then(|at| grid.nearest_of(at, drawn)) {
+                            let text = format!(
+                                "pipe \"{}\" names node \"{id}\", which no point is; it ends at point \"{other}\", to \
+                                 which it is not connected: a slip of the name?",
+                                line.id
+                            );
+                            notes.push(Note { kind: NoteKind::Problem, line: None, text });
+                        }
                         new(id.clone(), at, &mut grid);
                     }
                     (None, Some(at)) if !named => {

@@ -99,6 +99,31 @@ fn what_is_not_connected_is_told() {
 }
 
 #[test]
+fn names_of_ends_that_no_point_has_are_told() {
+    let pipe = |from: Value, to: Value| {
+        let path = [[11.58, 48.14], [11.59, 48.14]];
+        line(&path, json!({"pipe": "steel DN25", "from": from, "to": to}))
+    };
+    let one = |id: Value| {
+        json!({"type": "Feature", "geometry": {"type": "Point", "coordinates": [11.58, 48.14]},
+               "properties": {"id": id}})
+    };
+    let told = "names node \"statoin\", which no point is; it ends at point \"station\"";
+    let features = vec![one(json!("station")), pipe(json!("statoin"), json!("b"))];
+    let import = read(features, &GeojsonOptions::default()).unwrap();
+    assert!(said(&import, NoteKind::Problem, told), "{:?}", import.notes);
+    assert!(!said(&import, NoteKind::Problem, "node \"b\""), "no point lies there");
+    // Columns of floating point.
+    for (id, from) in [(json!(1), json!(1.0)), (json!("1"), json!(1.0)), (json!(1.0), json!("1"))] {
+        let features = vec![one(id), pipe(from, json!(2))];
+        let import = read(features, &GeojsonOptions::default()).unwrap();
+        assert!(pipes(&import)[0].contains("from = \"1\"; to = \"2\""), "{}", pipes(&import)[0]);
+        assert_eq!(import.nodes, 2);
+        assert!(!said(&import, NoteKind::Problem, "names node"), "{:?}", import.notes);
+    }
+}
+
+#[test]
 fn files_that_cannot_be_meant_are_refused() {
     let refused = |features, text: &str| {
         let message = read(features, &GeojsonOptions::default()).unwrap_err();

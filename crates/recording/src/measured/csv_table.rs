@@ -2,25 +2,11 @@
 
 use super::names::{self, Head};
 use super::remarks::Remarks;
+use super::time_columns::{self, TimeColumns};
 use super::times::{Form, Time, number};
 use super::{MeasuredColumn, MeasuredError, MeasuredOptions, MeasuredTable};
 use std::borrow::Cow;
 
-/// Names of columns with times.
-const TIME_NAMES: [&str; 12] = [
-    "time",
-    "times",
-    "timestamp",
-    "datetime",
-    "date_time",
-    "date",
-    "zeit",
-    "zeitstempel",
-    "datum",
-    "t",
-    "elapsed",
-    "elapsed_time",
-];
 /// Words for nothing measured.
 const NOTHING: [&str; 9] = ["", "nan", "na", "n/a", "null", "none", "-", "--", "nat"];
 
@@ -54,8 +40,11 @@ pub(super) fn read(
     let mut first = true;
     while reader.read_record(&mut record).map_err(|error| unreadable(&error))? {
         let line = record.position().map_or(0, csv::Position::line);
-        if first && table.units(&record) {
-            continue;
+        if first {
+            table.times.settle(&record);
+            if table.units(&record) {
+                continue;
+            }
         }
         first = false;
         table.row(&record, line);
@@ -70,48 +59,56 @@ fn unreadable(error: &csv::Error) -> MeasuredError {
 /// What splits the first line that is no comment into most cells; of equals a semicolon, then a tab.
 fn separator(text: &str) -> u8 {
     let head = text.lines().find(|line| !line.starts_with('#') && !line.trim().is_empty());
-    let count =
-        |separator: u8| head.unwrap_or_default().bytes().filter(|b| *b == separator).count();
-    let mut best = b',';
-    for candidate in [b'\t', b';'] {
-        if count(candidate) > 0 && count(candidate) >= count(best).min(1) {
-            best = candidate;
+    // Every second piece is between quotes.
+    let open: String = head.unwrap_or_default().split('"').step_by(2).collect();
+    let count = |separator: u8| open.bytes().filter(|byte| *byte == separator).count();
+    [b',', b'\t', b';']
+        .into_iter()
+        .filter(|c| count(*c) > 0)
+        .max_by_key(|c| count(*c))
+        .unwrap_or(b',')
+}
+
+/// Numbers with one comma, which could stand before decimals or thousands.
+#[derive(Default)]
+struct Commas {
+    /// Line and text of the first that could be either.
+    doubtful: Option<(u64, String)>,
+    /// Whether one can only be a decimal comma.
+    decimal: bool,
+}
+
+impl Commas {
+    fn see(&mut self, line: u64, cell: &str) {
+        let Some((whole, rest)) = cell.split_once(',') else { return };
+        let whole = whole.trim_start_matches(['-', '+']);
+        let thousands =
+            rest.len() == 3 && (1..=3).contains(&whole.len()) && !whole.starts_with('0');
+        if !thousands {
+            self.decimal = true;
+        } else if self.doubtful.is_none() {
+            self.doubtful = Some((line, cell.to_owned()));
         }
     }
-    best
 }
 
 struct Rows<'a> {
     options: &'a MeasuredOptions,
     heads: Vec<Head>,
-    time: usize,
+    times: TimeColumns,
     form: Option<Form>,
     /// Line, time and values of each row.
     rows: Vec<(u64, Time, Vec<f64>)>,
+    commas: Commas,
     remarks: Remarks,
 }
 
 impl<'a> Rows<'a> {
     fn new(heads: &csv::StringRecord, options: &'a MeasuredOptions) -> Result<Self, MeasuredError> {
         let parsed: Vec<Head> = heads.iter().map(Head::of).collect();
-        let time = match &options.time_column {
-            Some(name) => heads.iter().position(|head| head == name).ok_or_else(|| {
-                let names: Vec<&str> = heads.iter().collect();
-                let near = names.iter().min_by_key(|head| strsim::damerau_levenshtein(head, name));
-                let hint =
-                    near.map_or(String::new(), |near| format!("; the nearest is \"{near}\""));
-                MeasuredError::new(1, format!("there is no column \"{name}\" for the time{hint}"))
-            })?,
-            None => {
-                let known = |head: &Head| {
-                    TIME_NAMES.contains(&head.stem.to_lowercase().as_str())
-                        && head.unit.is_none_or(|unit| unit.si == "s")
-                };
-                parsed.iter().position(known).unwrap_or(0)
-            }
-        };
-        let (rows, remarks) = (Vec::new(), Remarks::default());
-        Ok(Self { options, heads: parsed, time, form: None, rows, remarks })
+        let times = TimeColumns::of(heads, &parsed, options.time_column.as_deref())?;
+        let (rows, commas, remarks) = (Vec::new(), Commas::default(), Remarks::default());
+        Ok(Self { options, heads: parsed, times, form: None, rows, commas, remarks })
     }
 
     /// Takes the row below the head where it holds units.
@@ -122,14 +119,17 @@ impl<'a> Rows<'a> {
         let cell = |i: usize| record.get(i).unwrap_or_default().trim_matches(['[', ']', '(', ')']);
         let known = |i: usize| cell(i).is_empty() || names::unit(cell(i)).is_some();
         let word = |i: usize| !cell(i).is_empty() && number(cell(i)).is_none();
-        let others = || (0..record.len()).filter(|&i| i != self.time);
-        let time_is_time = Form::of(cell(self.time), None, 0.0).is_some();
+        let others = || (0..record.len()).filter(|&i| !self.times.contains(i));
+        let time_is_time = Form::of(&self.times.text(record), None, 0.0).is_some();
         if time_is_time || !others().all(known) || !others().any(word) {
             return false;
         }
         for i in 0..self.heads.len() {
             if !cell(i).is_empty() && self.heads[i].unit.is_none() {
                 self.heads[i].unit = names::unit(cell(i));
+                if i == self.times.time && self.heads[i].unit.is_none() {
+                    self.heads[i].unknown = Some(cell(i).to_owned());
+                }
             }
         }
         true
@@ -143,12 +143,12 @@ impl<'a> Rows<'a> {
             });
             return;
         }
-        let text = record.get(self.time).unwrap_or_default();
-        let unit = self.heads[self.time].unit.filter(|unit| unit.si == "s");
+        let text = self.times.text(record);
         let form = self.form.or_else(|| {
-            Form::of(text, unit.map(|unit| unit.to_si(1.0, false)), self.options.utc_offset_s)
+            let unit_s = time_columns::unit_s(&self.heads[self.times.time]);
+            Form::of(&text, unit_s, self.options.utc_offset_s)
         });
-        let Some(time) = form.and_then(|form| form.read(text)) else {
+        let Some(time) = form.and_then(|form| form.read(&text)) else {
             self.remarks.add(2, "time", Some(line), || {
                 format!("\"{text}\" is no time as the others are: the row is left out")
             });
@@ -159,8 +159,9 @@ impl<'a> Rows<'a> {
         for (i, head) in self.heads.iter().enumerate() {
             let cell = record.get(i).unwrap_or_default();
             let value = match number(cell) {
-                _ if i == self.time => f64::NAN,
+                _ if self.times.contains(i) => f64::NAN,
                 Some(value) => {
+                    self.commas.see(line, cell);
                     head.unit.map_or(value, |unit| unit.to_si(value, head.is_difference()))
                 }
                 None => {
@@ -179,8 +180,17 @@ impl<'a> Rows<'a> {
     }
 
     fn finish(mut self) -> Result<MeasuredTable, MeasuredError> {
-        let time_name = &self.heads[self.time].stem;
+        let time_head = &self.heads[self.times.time];
+        let time_name = &time_head.stem;
+        let day_name = self.times.day.map(|day| &self.heads[day].stem);
         let Some(form) = self.form else {
+            if let Some(day_name) = day_name {
+                let problem = format!(
+                    "no row has a day in column \"{day_name}\" and a time of day in column \"{time_name}\" \
+                     (2024-01-31 and 12:00:00): name the column that has the whole time"
+                );
+                return Err(MeasuredError::new(2, problem));
+            }
             return Err(MeasuredError::new(
                 2,
                 format!(
@@ -197,6 +207,27 @@ impl<'a> Rows<'a> {
         if form.is_ambiguous() {
             self.remarks.add(7, "day", None, || "the times are read as day/month/year".into());
         }
+        if let Some(day_name) = day_name {
+            self.remarks.add(7, "columns", None, || {
+                format!("the time is put together from columns \"{day_name}\" and \"{time_name}\"")
+            });
+        }
+        if let (Form::Unix(unit_ns), Some(unit_s)) = (form, time_columns::unit_s(time_head))
+            && unit_ns < 0.5e9 * unit_s
+        {
+            self.remarks.add(7, "unit", None, || {
+                format!(
+                    "column \"{time_name}\" counts in units of {} s since 1970, as its numbers are too large for \
+                     the unit in the head",
+                    unit_ns / 1e9
+                )
+            });
+        }
+        if let (Some((line, cell)), false) = (self.commas.doubtful.take(), self.commas.decimal) {
+            self.remarks.add(6, "commas", Some(line), || {
+                format!("decimal commas: \"{cell}\" is {}, not thousands", cell.replace(',', "."))
+            });
+        }
         self.order();
         let rows = std::mem::take(&mut self.rows);
         let start_unix_ns = match rows.first() {
@@ -208,7 +239,7 @@ impl<'a> Rows<'a> {
             Time::Unix(ns) => (ns - i128::from(start_unix_ns.unwrap_or(0))) as f64 / 1e9,
         };
         let mut columns: Vec<MeasuredColumn> = Vec::new();
-        for (i, head) in self.heads.iter().enumerate().filter(|(i, _)| *i != self.time) {
+        for (i, head) in self.heads.iter().enumerate().filter(|(i, _)| !self.times.contains(*i)) {
             let values: Vec<f64> = rows.iter().map(|(.., values)| values[i]).collect();
             if let Some(word) = &head.unknown {
                 let text =
@@ -275,7 +306,7 @@ impl<'a> Rows<'a> {
 }
 
 /// A name that no column has yet.
-fn free(columns: &[MeasuredColumn], wanted: String) -> String {
+pub(super) fn free(columns: &[MeasuredColumn], wanted: String) -> String {
     let taken = |name: &str| columns.iter().any(|column| column.name == name);
     if !taken(&wanted) {
         return wanted;

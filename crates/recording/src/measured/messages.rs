@@ -1,5 +1,6 @@
 //! JSON messages in MCAP files of other programs.
 
+use super::csv_table::free;
 use super::names::{self, Head};
 use super::{MeasuredColumn, MeasuredError, MeasuredOptions, MeasuredTable, Remark};
 use serde_json::Value;
@@ -84,9 +85,15 @@ pub(super) fn read(
         }
     };
     topic.rows.sort_by_key(|(time, _)| *time);
+    let all = topic.rows.len();
     topic.rows.dedup_by_key(|(time, _)| *time);
+    let again = all - topic.rows.len();
     let mut table = table_of(&topic);
     table.remarks.push(Remark::of_file(format!("the messages of {name}")));
+    if again > 0 {
+        let text = format!("{again} messages at the time of another one: the first counts");
+        table.remarks.push(Remark::of_file(text));
+    }
     table.remarks.extend(damage.map(Remark::of_file));
     Ok(table)
 }
@@ -96,7 +103,8 @@ fn table_of(topic: &Topic) -> MeasuredTable {
     let mut paths: Vec<&String> = topic.rows.iter().flat_map(|(_, row)| row.keys()).collect();
     paths.sort_unstable();
     paths.dedup();
-    let columns = paths.into_iter().map(|path| {
+    let mut columns: Vec<MeasuredColumn> = Vec::new();
+    for path in paths {
         let mut head = Head::of(path);
         if let Some(unit) = topic.units.get(path).and_then(|word| names::unit(word)) {
             // The name may end in the unit already.
@@ -106,16 +114,14 @@ fn table_of(topic: &Topic) -> MeasuredTable {
             let value = row.get(path).copied().unwrap_or(f64::NAN);
             head.unit.map_or(value, |unit| unit.to_si(value, head.is_difference()))
         };
-        MeasuredColumn {
-            values: topic.rows.iter().map(value).collect(),
-            unit: head.unit.map_or("", |unit| unit.si).to_owned(),
-            name: head.name(),
-        }
-    });
+        let values = topic.rows.iter().map(value).collect();
+        let unit = head.unit.map_or("", |unit| unit.si).to_owned();
+        columns.push(MeasuredColumn { name: free(&columns, head.name()), unit, values });
+    }
     MeasuredTable {
         start_unix_ns: i64::try_from(start).ok().filter(|start| *start != 0),
         time_s: topic.rows.iter().map(|(time, _)| (time - start) as f64 / 1e9).collect(),
-        columns: columns.collect(),
+        columns,
         remarks: Vec::new(),
     }
 }

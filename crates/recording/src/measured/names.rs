@@ -64,6 +64,10 @@ pub(super) fn unit(word: &str) -> Option<FileUnit> {
     Unit::find(suffix).map(|unit| FileUnit { si: unit.si, unit: Some(unit) })
 }
 
+/// Words in names of temperature differences, in lower case.
+const DIFFERENCES: [&str; 8] =
+    ["difference", "diff", "delta", "deltat", "\u{3b4}t", "dt", "spread", "spreizung"];
+
 /// A column head: its name without unit, the unit, and a word that should be one but is not known.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Head {
@@ -92,8 +96,8 @@ impl Head {
     /// Whether it is a difference of temperatures.
     pub fn is_difference(&self) -> bool {
         let stem = self.stem.to_lowercase();
-        is_difference(&stem)
-            || ["delta", "diff", "dt_", "spread"].iter().any(|word| stem.contains(word))
+        let mut words = stem.split(|c: char| !c.is_alphanumeric());
+        is_difference(&stem) || words.any(|word| DIFFERENCES.contains(&word))
     }
 
     /// The name with its SI unit.

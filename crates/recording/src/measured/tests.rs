@@ -49,6 +49,8 @@ fn units_in_a_row_of_their_own_and_times_of_many_forms() {
         ("1.2.2024 12:00", "1.2.2024 12:01"),
         ("1706788800", "1706788860"),
         ("1706788800000", "1706788860000"),
+        ("1706788800000000", "1706788860000000"),
+        ("1706788800000000000", "1706788860000000000"),
     ] {
         let table = read(&format!("time,p_bar\n{first},1\n{second},2\n"));
         assert_eq!(table.start_unix_ns, Some(1_706_788_800_000_000_000), "{first}");
@@ -62,6 +64,83 @@ fn units_in_a_row_of_their_own_and_times_of_many_forms() {
     assert!(said(&read("time,p_bar\n1/2/2024 12:00,1\n"), "day/month/year"));
     let table = read("p_bar,T [K],timestamp\n1,300,5\n");
     assert_eq!((table.time_s[0], table.columns.len()), (5.0, 2), "T is no time");
+}
+
+#[test]
+fn the_unit_of_the_head_counts_and_large_times_are_since_1970() {
+    let start = Some(1_706_788_800_000_000_000);
+    for (head, first, second) in [
+        ("time [s]", "1706788800", "1706788860"),
+        ("timestamp_s", "1706788800", "1706788860"),
+        ("time [ms]", "1706788800000", "1706788860000"),
+        ("time_us", "1706788800000000", "1706788860000000"),
+        ("time [ns]", "1706788800000000000", "1706788860000000000"),
+    ] {
+        let table = read(&format!("{head},p_bar\n{first},1\n{second},2\n"));
+        assert_eq!(table.start_unix_ns, start, "{head}");
+        assert_eq!(table.time_s, [0.0, 60.0], "{head}");
+        assert!(table.remarks.is_empty(), "{head}: {:?}", table.remarks);
+    }
+    let table = read("time [s],p_bar\n1706788800000,1\n");
+    assert_eq!(table.start_unix_ns, start);
+    assert!(said(&table, "\"time\" counts in units of 0.001 s since 1970"));
+    for (text, second_s) in [
+        ("time_ms,p_bar\n0,1\n500,2\n", 0.5),
+        ("time,p\nms,bar\n0,1\n500,2\n", 0.5),
+        ("time [h],p_bar\n0,1\n30000,2\n", 1.08e8),
+    ] {
+        let table = read(text);
+        assert_eq!((table.start_unix_ns, table.time_s[1]), (None, second_s), "{text}");
+    }
+    let table = read("time [h],p_bar\n30000,1\n30001,2\n");
+    assert_eq!((table.start_unix_ns, table.time_s[0]), (None, 1.08e8), "hours of operation");
+}
+
+#[test]
+fn the_head_says_separator_and_time() {
+    let table = read("time,T supply [degC; top],flow [l/min],p_bar\n0,60,3,1\n");
+    assert_eq!(table.columns.len(), 3);
+    let table = read("time;\"T, top, left, 1 [degC]\";p_bar\n0;60,5;1\n");
+    assert_eq!(table.columns[0].values, [333.65]);
+    let table = read("Date/Time,T [degC],flow [l/min]\n2024-02-01T12:00:00Z,60,3\n");
+    assert_eq!(table.start_unix_ns, Some(1_706_788_800_000_000_000));
+    assert_eq!(table.column("T_k").unwrap().values, [333.15]);
+    let table = read("T [degC],t,p_bar\n60,5,1\n");
+    assert_eq!((table.time_s[0], table.columns[0].name.as_str()), (5.0, "T_k"));
+}
+
+#[test]
+fn a_day_and_a_time_of_day_are_one_time() {
+    for (head, first, second) in [
+        ("Date,Time", "2024-02-01,12:00:00", "2024-02-01,12:01:00"),
+        ("Uhrzeit,Datum", "12:00,01.02.2024", "12:01,01.02.2024"),
+        ("date,time", "2024-02-01,2024-02-01 12:00:00", "2024-02-01,2024-02-01 12:01:00"),
+    ] {
+        let table = read(&format!("{head},p_bar\n{first},1\n{second},2\n"));
+        assert_eq!(table.start_unix_ns, Some(1_706_788_800_000_000_000), "{head}");
+        assert_eq!((table.time_s.as_slice(), table.columns.len()), (&[0.0, 60.0][..], 1));
+        assert_eq!(said(&table, "is put together"), head != "date,time", "{head}");
+    }
+    let problem = problem("Date,Time,p_bar\n2024-02-01,43200,1\n");
+    assert!(problem.contains("\"Date\" and a time of day in column \"Time\""), "{problem}");
+}
+
+#[test]
+fn differences_are_told_by_whole_words() {
+    let table = read("time,T_diffuser [degC],dT [degC],deltaT_degc,T-diff [degC]\n0,20,20,20,20\n");
+    let values: Vec<f64> = table.columns.iter().map(|column| column.values[0]).collect();
+    assert_eq!(values, [293.15, 20.0, 20.0, 20.0]);
+}
+
+#[test]
+fn commas_that_could_stand_before_thousands_are_told_once() {
+    let table = read("time_s;a_k;b_k\n0;1,234;2\n1;5,678;3\n");
+    assert_eq!(table.columns[0].values, [1.234, 5.678]);
+    let told = table.remarks.iter().filter(|remark| remark.text.contains("decimal commas")).count();
+    assert_eq!(told, 1);
+    assert!(said(&table, "line 2: decimal commas: \"1,234\" is 1.234"), "{:?}", table.remarks);
+    let table = read("time_s;a_k\n0;1,234\n1;5,67\n");
+    assert!(table.remarks.is_empty(), "5,67 has decimals: {:?}", table.remarks);
 }
 
 #[test]
@@ -175,6 +254,8 @@ fn messages_of_other_programs() {
         (plain, 10, r#"{"supply": 60, "pump": {"p_bar": 1.5}, "name": "x"}"#),
         (other, 11, r#"{"ok": 1}"#),
         (plain, 20, r#"{"supply": 61}"#),
+        (plain, 20, r#"{"supply": 99, "pump": {"p_pa": 5}}"#),
+        (plain, 30, r#"{"supply": 62, "pump": {"p_pa": 7}}"#),
     ] {
         let time = second * 1_000_000_000;
         let header = mcap::records::MessageHeader {
@@ -193,6 +274,8 @@ fn messages_of_other_programs() {
     let table = MeasuredTable::from_mcap(&file, &options).unwrap();
     let pressure = &table.column("pump.p_pa").unwrap().values;
     assert!(pressure[0] == 150_000.0 && pressure[1].is_nan());
-    assert_eq!(table.column("supply_k").unwrap().values, [333.15, 334.15]);
-    assert_eq!(table.time_s, [0.0, 10.0]);
+    assert_eq!(table.column("supply_k").unwrap().values, [333.15, 334.15, 335.15]);
+    assert_eq!(table.time_s, [0.0, 10.0, 20.0]);
+    assert!(said(&table, "1 messages at the time of another one: the first counts"));
+    assert_eq!(table.column("pump.p_2_pa").unwrap().values[2], 7.0, "p_bar and p_pa");
 }

@@ -16,10 +16,8 @@ const LOCAL: [&str; 9] = [
     "%d/%m/%Y %H:%M:%S%.f",
     "%d/%m/%Y %H:%M",
 ];
-/// Numbers from here on are seconds, milliseconds, nanoseconds since 1970: 1973 in seconds.
-const UNIX_S: f64 = 1e8;
-const UNIX_MS: f64 = 1e11;
-const UNIX_NS: f64 = 1e17;
+/// From these numbers on, times count since 1970 (1973 in each), in units of so many ns.
+const UNIX: [(f64, f64); 4] = [(1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9)];
 
 /// How a column of times is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,12 +46,12 @@ impl Form {
     pub fn of(text: &str, unit_s: Option<f64>, utc_offset_s: f64) -> Option<Self> {
         let offset_s = utc_offset_s.round() as i64;
         if let Some(value) = number(text) {
-            return Some(match unit_s {
-                Some(unit_s) => Self::Relative(unit_s),
-                None if value >= UNIX_NS => Self::Unix(1.0),
-                None if value >= UNIX_MS => Self::Unix(1e6),
-                None if value >= UNIX_S => Self::Unix(1e9),
-                None => Self::Relative(1.0),
+            let unit_s = unit_s.unwrap_or(1.0);
+            // Nobody counts minutes, hours or days since 1970, but years of operation in hours.
+            let since_1970 = UNIX.iter().find(|(from, _)| unit_s <= 1.0 && value * unit_s >= *from);
+            return Some(match since_1970 {
+                Some((_, unit_ns)) => Self::Unix(unit_ns * unit_s),
+                None => Self::Relative(unit_s),
             });
         }
         let forms = std::iter::once(Self::Zoned)
