@@ -115,7 +115,7 @@ enum Command {
         out: PathBuf,
         #[command(flatten)]
         table: commands::export::CsvOptions,
-        /// Network: where x_m = 0, y_m = 0 of the model lies, deg (default: as [model] says)
+        /// Network: where x_m = 0, y_m = 0 of the model lies, deg (default: as the model says)
         #[arg(long, num_args = 2, value_names = ["LATITUDE", "LONGITUDE"], allow_negative_numbers = true)]
         origin: Option<Vec<f64>>,
     },
@@ -138,7 +138,7 @@ enum ImportFormat {
         #[arg(long)]
         self_acting: bool,
     },
-    /// Measured series (CSV of a logger, or MCAP) as the file of a [[series]]: SI, sorted, gaps told
+    /// Measured series (CSV of a logger, or MCAP) as the file of a series of a model: SI, sorted, gaps told
     Measured {
         /// Table (.csv) or recording (.mcap)
         file: PathBuf,
