@@ -5,7 +5,7 @@
 //!
 //! **Assumptions** the brine is warmed by a constant difference and its flow is what that needs; its pump is part of the map. On or off; no defrosting. **Validity** that of map and ground. **Numerics** the brine of a step
 //! follows from the ground at its begin and the heat that the unit takes in steady operation, found in
-//! [`ROUNDS`] rounds.
+//! `ROUNDS` rounds.
 //!
 //! **Sources** `prohmo`; values without a source are marked assumed in `docs/src/heat-pumps.md`.
 

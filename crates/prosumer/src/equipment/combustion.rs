@@ -7,7 +7,7 @@
 //! electricity generated counts negative; heat that start and stop shift between metal and water is part of the losses.
 //!
 //! **Internal control** the load is the command, or what lifts a constant flow to the set supply: then the unit
-//! stops where its smallest load overshoots by [`BAND_K`], and starts again where it no longer does. Return and
+//! stops where its smallest load overshoots by `BAND_K`, and starts again where it no longer does. Return and
 //! supply above their limits stop the unit; it may start again when both are below by the restart difference.
 //!
 //! **Assumptions** no water content. Where the water takes less heat than planned (less flow, a supply that would be too hot),

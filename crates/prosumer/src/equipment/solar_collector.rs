@@ -1,6 +1,6 @@
 //! Solar thermal collectors with their pump: flat plates or tubes in the circuit of a coil.
 //!
-//! **Equation** quasi-dynamic, per area, in [`CELLS`] cells one behind the other:
+//! **Equation** quasi-dynamic, per area, in `CELLS` cells one behind the other:
 //! ```text
 //! c5 dT/dt = eta0 (K_b G_b + K_d G_d) - a1 (T - T_air) - a2 (T - T_air)^2 - q_use,   q_use = m cp (T - T_before) n/A
 //! K_b = 1 - b0 (1/cos theta - 1), 0 beyond 80 deg
