@@ -182,7 +182,11 @@ pub fn fit(
                     (x + dx).clamp(u.mean - BOUND_SD * u.sd, u.mean + BOUND_SD * u.sd)
                 })
                 .collect();
-            let trial = evaluate(&there)?;
+            // Where the model does not run, the step was too long.
+            let Ok(trial) = evaluate(&there) else {
+                damping *= 5.0;
+                continue;
+            };
             // Broyden: the sensitivities that the step has shown. Residuals fall where readings rise.
             let moved =
                 DVector::from_iterator(n, there.iter().zip(&at).map(|(new, old)| new - old));

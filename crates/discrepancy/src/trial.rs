@@ -23,7 +23,7 @@ pub struct Tried {
 /// Fits of candidates beside what is there; from the values of an earlier round where there is one.
 ///
 /// # Errors
-/// What keeps the model from running.
+/// What keeps the model from running with every one of them.
 pub fn fits(
     experiment: &Experiment,
     base: &[Unknown],
@@ -52,7 +52,15 @@ pub fn fits(
     });
     let mut done = done.into_inner().unwrap_or_default();
     done.sort_by_key(|(k, _)| *k);
-    done.into_iter().map(|(_, tried)| tried).collect()
+    // A candidate with which the model does not run is none, unless it runs with none of them.
+    let (ran, failed): (Vec<_>, Vec<_>) =
+        done.into_iter().map(|(_, tried)| tried).partition(Result::is_ok);
+    if ran.is_empty()
+        && let Some(error) = failed.into_iter().find_map(Result::err)
+    {
+        return Err(error);
+    }
+    Ok(ran.into_iter().filter_map(Result::ok).collect())
 }
 
 fn try_one(
