@@ -62,6 +62,7 @@ fn data_that_contradict_themselves_are_not_fitted() {
         (&(|cells: &mut [f64]| cells[3] = 50.0) as &dyn Fn(&mut [f64]), "never changes"),
         (&|cells: &mut [f64]| cells[3] += 273.15, "K and degC confused"),
         (&|cells: &mut [f64]| cells[3] = cells[1], "the same, reading for reading"),
+        (&|cells: &mut [f64]| cells[2] /= 3.6, "\"flow_kg_h\" fits far better with"),
     ] {
         let found = changed(change);
         assert_eq!(found.verdict, Verdict::DataProblem);

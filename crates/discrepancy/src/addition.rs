@@ -74,6 +74,7 @@ mod tests {
             probability: 1.0,
             evidence: 9.0,
             strain: 0.0,
+            beyond: 0.0,
             validation_z: 1.0,
             separates: "",
         }

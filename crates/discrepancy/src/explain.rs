@@ -21,6 +21,8 @@ const WINS: f64 = 4.0;
 const TOGETHER: f64 = 3.0;
 /// Effects whose residuals on samples that were not fitted are so many times those of the best are refuted.
 const AS_WELL: f64 = 1.5;
+/// An effect that lies so many standard deviations from the middle of its range is no explanation.
+const BEYOND: f64 = 3.0;
 /// Values within so many standard deviations of what is plausible are equally so.
 const PLAUSIBLE: f64 = 2.0;
 /// Sensitivities whose directions agree better than this are not told apart.
@@ -80,6 +82,8 @@ pub struct Finding {
     pub evidence: f64,
     /// Distance from what is plausible, standard deviations.
     pub strain: f64,
+    /// Distance from the middle of the range of the effect, standard deviations.
+    pub beyond: f64,
     /// Root mean square of all residuals on the validation samples over their uncertainty.
     pub validation_z: f64,
     /// What would tell it from its rivals.
@@ -214,6 +218,7 @@ pub fn explain(
                 probability: if refuted(t) { 0.0 } else { over(t.fit.log_evidence) / total },
                 evidence: tempered(t.fit.log_evidence - null.log_evidence),
                 strain: candidate.strain(t.fit.at[t.place]),
+                beyond: (t.fit.at[t.place] - candidate.unknown.mean).abs() / candidate.unknown.sd,
                 validation_z: z(&likelihood, &t.fit.readings, &validated),
                 separates: candidate.separates,
             }
@@ -244,6 +249,14 @@ pub fn explain(
                     Verdict::Unexplained,
                     format!(
                         "residuals are {null_z:.1} standard deviations, and no effect of the catalogue takes much of them away"
+                    ),
+                )
+            } else if winner.beyond > BEYOND {
+                (
+                    Verdict::Unexplained,
+                    format!(
+                        "the best effect, {} at {}, would need a value far from anything plausible",
+                        winner.id, winner.component
                     ),
                 )
             } else if explained < EXPLAINED {

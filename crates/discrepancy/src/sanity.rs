@@ -3,6 +3,7 @@
 use crate::data::Run;
 use crate::experiment::Experiment;
 use crate::sensors::Role;
+use crate::unknown::{Target, Unknown};
 
 /// Fewest readings over those of the best column.
 const LEAST_SHARE: f64 = 0.1;
@@ -13,6 +14,8 @@ const COLDEST_K: f64 = 230.0;
 const HOTTEST_K: f64 = 480.0;
 /// A unit is confused where the ratio of reading and simulation is this near a factor of units, relative.
 const NEAR_FACTOR: f64 = 0.05;
+/// Another unit must reduce the squared residuals to this share.
+const FAR_BETTER: f64 = 0.2;
 /// Factors by which units are confused.
 const FACTORS: &[(f64, &str)] = &[
     (3.6, "a factor of 3.6 (m3/h and l/s, kWh and MJ)"),
@@ -107,6 +110,7 @@ pub fn beside(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> Vec<S
             }
         }
     }
+    problems.extend(units_of_inputs(experiment, readings, sigma));
     let misfit = |of_sensor: usize, as_sensor: usize| -> f64 {
         let (own, other) = (of(of_sensor), of(as_sensor));
         own.iter()
@@ -125,6 +129,34 @@ pub fn beside(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> Vec<S
                     problems.push(format!("columns \"{a}\" and \"{b}\" seem to be exchanged"));
                 }
             }
+        }
+    }
+    problems
+}
+
+/// Inputs that fit far better in another unit.
+fn units_of_inputs(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> Vec<String> {
+    let misfit = |readings: &[f64]| -> f64 {
+        let samples = experiment.samples.iter().zip(readings).zip(sigma);
+        samples.map(|((sample, y), sigma)| ((sample.value - y) / sigma).powi(2)).sum()
+    };
+    let as_is = misfit(readings);
+    if as_is < 10.0 * readings.len() as f64 {
+        return Vec::new();
+    }
+    let mut problems = Vec::new();
+    for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
+        if sensor.role != Role::Input || sensor.si() == "k" {
+            continue;
+        }
+        let gain = [Unknown::plain(Target::Gain(i), 1.0, 1.0)];
+        let other = |(factor, _): &&(f64, &str)| {
+            experiment.readings(&gain, &[*factor]).is_ok_and(|y| misfit(&y) < FAR_BETTER * as_is)
+        };
+        if let Some((_, words)) = FACTORS.iter().filter(|(factor, _)| *factor > 0.0).find(other) {
+            let column = &sensor.column;
+            problems
+                .push(format!("column \"{column}\" fits far better with {words}: check its unit"));
         }
     }
     problems
