@@ -27,6 +27,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import SupportsFloat, TypeAlias
 
@@ -39,7 +40,7 @@ Outputs: TypeAlias = SupportsFloat | Sequence[float] | npt.NDArray[np.float64] |
 """What `Controller.update` returns."""
 
 
-class Controller:
+class Controller(ABC):
     """A controller of your own: subclass it, and hand instances to `Model.simulate` or `Model.simulation`.
 
     It runs after the controllers of the model, at its own interval; steps end at its updates. Its
@@ -67,6 +68,7 @@ class Controller:
     def start(self) -> None:
         """Called at the start of each simulation and by `Simulation.reset`: forget what was."""
 
+    @abstractmethod
     def update(self, time_s: float, measured: npt.NDArray[np.float64]) -> Outputs:
         """The values of the signals from now on.
 
@@ -83,4 +85,3 @@ class Controller:
         float, sequence of float, numpy.ndarray or None
             A value for each of `acts_on`, in SI and within `limits`; None leaves them as they are.
         """
-        raise NotImplementedError(f"{type(self).__name__} has no method update(time_s, measured)")
