@@ -3,6 +3,7 @@
 pub mod dense;
 mod elimination;
 pub mod interpolate;
+pub mod quadrature;
 pub mod regularize;
 pub mod sparse;
 pub mod symmetric;

@@ -3,6 +3,7 @@
 use super::phase::{CompressorState, Phase, SAME_S};
 use super::{Command, Compressor};
 use crate::performance_map::Performance;
+use anergy_core::numerics::quadrature::GAUSS;
 
 /// What a compressor did on average over a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,12 +28,6 @@ pub struct Means {
     pub modulation: f64,
 }
 
-/// Points and weights of Gauss' rule on 0 to 1.
-const GAUSS: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_31, 5.0 / 18.0),
-    (0.5, 4.0 / 9.0),
-    (0.887_298_334_620_741_7, 5.0 / 18.0),
-];
 /// A step cannot have more events than this and an event per second.
 const EVENTS: usize = 64;
 
