@@ -1,0 +1,125 @@
+//! Effects of pipes.
+
+use super::{Candidate, effect_target, has, sensed};
+use crate::experiment::Experiment;
+use crate::unknown::Unknown;
+use anergy_network::elements::ElementParams;
+use anergy_network::elements::pipe::PipeParams;
+use anergy_network::elements::pipe::thermal::WallModel;
+use anergy_simulation::model::Model;
+use std::f64::consts::PI;
+
+/// Tolerance of the length of a pipe, relative.
+const LENGTH: f64 = 0.01;
+/// Tolerance of a heat loss, relative.
+const LOSS: f64 = 0.08;
+/// Tolerance of the temperature around a pipe, K.
+const SURROUNDINGS_K: f64 = 0.5;
+/// Wall of a pipe whose outer diameter is not known, m.
+const WALL_M: f64 = 0.003;
+
+fn pipes(model: &Model) -> impl Iterator<Item = (&str, &PipeParams)> {
+    model.edges.iter().filter_map(|edge| match &edge.params {
+        ElementParams::Pipe(pipe) => Some((edge.id.as_str(), pipe)),
+        _ => None,
+    })
+}
+
+pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
+    for (component, _) in pipes(&experiment.model) {
+        let free = |id| !has(experiment, id, component);
+        if free("P10") {
+            all.push(Unknown::plain(effect_target("P10", component, "factor"), 1.0, LENGTH));
+        }
+        if free("P2") {
+            let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, LOSS);
+            all.push(Unknown { logarithmic: true, ..factor });
+        }
+        if free("P3") {
+            let target = effect_target("P3", component, "difference_k");
+            all.push(Unknown::plain(target, 0.0, SURROUNDINGS_K));
+        }
+    }
+}
+
+pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
+    let (heat, pressure) = (sensed(experiment, "k"), sensed(experiment, "pa"));
+    for (component, pipe) in pipes(&experiment.model) {
+        if heat {
+            of_heat(component, pipe, all);
+        }
+        if pressure {
+            all.push(Candidate::effect(
+                "P8",
+                component,
+                "pressure loss of the pipe",
+                ("factor", "1"),
+                |target| Unknown::between(target, 0.5, 5.0).starting_at(1.0),
+                "pressure losses at two flow rates",
+            ));
+        }
+    }
+}
+
+fn of_heat(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
+    let inner_m = pipe.inner_diameter_m;
+    let outer_m = pipe.outer_diameter_m.unwrap_or(inner_m + 2.0 * WALL_M);
+    let steel = pipe.wall_density_kg_m3 * pipe.wall_heat_capacity_j_kg_k;
+    let geometry = steel * 0.25 * PI * (outer_m * outer_m - inner_m * inner_m);
+    if pipe.wall == WallModel::None {
+        let wall = Candidate::effect(
+            "P1",
+            component,
+            "heat stored in the wall of the pipe",
+            ("wall_capacity_j_m_k", "J/(m K)"),
+            |target| Unknown::between(target, 0.5 * geometry, 1.5 * geometry),
+            "several flow rates, or a sensor on the wall of the pipe",
+        );
+        // Laws of the film differ: 0.5 to 2 of what this one says.
+        let film = |target| Unknown::between(target, 0.5, 2.0).starting_at(1.0);
+        all.push(wall.with("film_factor", film));
+    }
+    let insulation = Candidate::effect(
+        "P2",
+        component,
+        "insulation",
+        ("factor", "1"),
+        |target| Unknown::between(target, 0.3, 6.0).starting_at(1.0),
+        "two flow rates at two temperatures",
+    );
+    all.push(insulation.tolerated(0.0, LOSS));
+    let surroundings = Candidate::effect(
+        "P3",
+        component,
+        "temperature around the pipe",
+        ("difference_k", "K"),
+        |target| Unknown::plain(target, 0.0, 10.0 / 1.96),
+        "a probe in the ground, or a run of cold and one of hot water",
+    );
+    all.push(surroundings.tolerated(0.0, SURROUNDINGS_K));
+    all.push(Candidate::effect(
+        "P5",
+        component,
+        "heat loss at standstill",
+        ("factor", "1"),
+        |target| Unknown::between(target, 0.2, 5.0),
+        "pauses of several lengths",
+    ));
+    all.push(Candidate::effect(
+        "P7",
+        component,
+        "axial dispersion",
+        ("dispersion_m2_s", "m2/s"),
+        |target| Unknown::between(target, 0.01, 2.0),
+        "two flow rates",
+    ));
+    let length = Candidate::effect(
+        "P10",
+        component,
+        "length of the pipe",
+        ("factor", "1"),
+        |target| Unknown::plain(target, 1.0, 0.3 / 1.96),
+        "a second flow meter, or the pressure loss",
+    );
+    all.push(length.tolerated(1.0, LENGTH));
+}
