@@ -34,6 +34,7 @@ fn least(kind: &str) -> Value {
         | "booster_heat_pump"
         | "booster_transfer_station"
         | "direct_exchanger"
+        | "balancing_exchanger"
         | "brine_heat_pump"
         | "mixing_station"
         | "condensing_boiler"

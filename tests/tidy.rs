@@ -181,6 +181,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "least_modulation",
     "mode",
     "modulation",
+    "flow_ratio",
     "modulation_min",
     "on",
     "part_load_gain",

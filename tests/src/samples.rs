@@ -157,7 +157,8 @@ fn pump() -> impl Strategy<Value = PumpParams> {
     ];
     (curve, mode, 0.0..0.9).prop_map(|(pump, mode, share): (_, _, f64)| {
         if mode == PumpMode::Speed {
-            return pump;
+            // A third of them turn both ways.
+            return PumpParams { reversible: share < 0.3, ..pump };
         }
         let still = PumpParams { mode, speed: 0.0, initial_speed: 0.0, speed_min: 0.0, ..pump };
         match mode {

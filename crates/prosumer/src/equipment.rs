@@ -1,6 +1,7 @@
 //! REGISTRY of the thermal units: adding one is one file, its `mod` line and its line below.
 
 pub mod air_source_heat_pump;
+pub mod balancing_exchanger;
 pub mod battery;
 pub mod booster_heat_pump;
 pub mod brine_heat_pump;
@@ -35,6 +36,7 @@ anergy_core::registry! {
         BoosterTransferStation("booster_transfer_station", booster_heat_pump::BoosterHeatPump, booster_heat_pump::BoosterTransferStationParams),
         BrineHeatPump("brine_heat_pump", brine_heat_pump::BrineHeatPump, brine_heat_pump::BrineHeatPumpParams),
         DirectExchanger("direct_exchanger", direct_exchanger::DirectExchanger, direct_exchanger::DirectExchangerParams),
+        BalancingExchanger("balancing_exchanger", balancing_exchanger::BalancingExchanger, balancing_exchanger::BalancingExchangerParams),
         CondensingBoiler("condensing_boiler", combustion::Combustion, combustion::boiler::CondensingBoilerParams),
         Chp("chp", combustion::Combustion, combustion::chp::ChpParams),
         StirlingChp("stirling_chp", combustion::Combustion, combustion::stirling::StirlingChpParams),

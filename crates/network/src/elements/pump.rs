@@ -11,6 +11,9 @@
 //! power). The work `V dp` itself warms the water where it dissipates, if the model counts friction
 //! (`transport/friction.rs`).
 //!
+//! A `reversible` pump turns backwards at a negative speed and is then its own mirror image,
+//! `p_a - p_b = -(p_a - p_b)(-m, -u)`.
+//!
 //! With `mode = "flow"`, `"head"` or `"proportional_head"` the pump chooses the speed that holds its set
 //! value, up to the full one and down to standstill: a median of three rising laws (`mode.rs`).
 //!
@@ -24,6 +27,7 @@
 //!
 //! **Sources** `licklederer2021`, `wetter2014`, `elizarov2021` (rise time).
 
+mod command;
 mod curve;
 mod efficiency;
 mod mode;
@@ -99,6 +103,9 @@ pub struct PumpParams {
     /// Largest relative speed.
     #[serde(default = "one")]
     pub speed_max: f64,
+    /// Whether it turns both ways: a negative speed pumps from b to a, with the same curve.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub reversible: bool,
     /// Time in which the speed, or what else is commanded, follows a step by 99.6 %, s.
     #[serde(default = "default_rise_time")]
     pub rise_time_s: f64,
@@ -128,6 +135,11 @@ pub struct PumpParams {
 
 fn one() -> f64 {
     1.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 fn default_rise_time() -> f64 {
@@ -162,6 +174,7 @@ impl Default for PumpParams {
             initial_speed: 0.0,
             speed_min: 0.0,
             speed_max: one(),
+            reversible: false,
             rise_time_s: default_rise_time(),
             efficiency_hydraulic: default_efficiency(),
             efficiency_motor: default_efficiency(),
@@ -221,77 +234,6 @@ impl PumpParams {
             speed_max,
         })
     }
-
-    /// What is commanded: the speed, or the flow or head up to what the curve has at full speed. Only a
-    /// speed starts elsewhere than where its command leads.
-    fn actuator(&self, curve: &HeadCurve, speed_max: f64) -> Result<Actuator, ElementError> {
-        let within = |field, value, max, requirement| {
-            if (0.0..=max).contains(&value) {
-                Ok(value)
-            } else {
-                Err(ElementError::OutOfRange { field, value, requirement })
-            }
-        };
-        let mut speeds = [0.0; 3];
-        for (i, (field, value)) in [
-            ("speed", self.speed),
-            ("initial_speed", self.initial_speed),
-            ("speed_min", self.speed_min),
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            speeds[i] = within(field, value, speed_max, "must lie between 0 and speed_max")?;
-        }
-        let (position, unit, max) = match self.mode {
-            PumpMode::Speed => ("speed", "", speed_max),
-            PumpMode::Flow => ("m_flow_set_kg_s", "kg_s", speed_max * curve.m_free_kg_s),
-            PumpMode::Head | PumpMode::ProportionalHead => {
-                ("head_pa", "pa", speed_max * speed_max * curve.head_max_pa)
-            }
-        };
-        let foreign = [
-            (
-                "speed, initial_speed and speed_min",
-                speeds.iter().any(|&s| s != 0.0),
-                &[PumpMode::Speed][..],
-            ),
-            ("m_flow_set_kg_s", self.m_flow_set_kg_s.is_some(), &[PumpMode::Flow]),
-            ("head_pa", self.head_pa.is_some(), &[PumpMode::Head, PumpMode::ProportionalHead]),
-        ];
-        if let Some((fields, ..)) =
-            foreign.iter().find(|(_, given, modes)| *given && !modes.contains(&self.mode))
-        {
-            return Err(ElementError::Fields {
-                problem: format!("{fields} given, but by its mode this pump holds {position}"),
-            });
-        }
-        let requirement = "must lie between 0 and what the curve has at full speed";
-        let initial_command = match self.mode {
-            PumpMode::Speed => self.speed,
-            PumpMode::Flow => {
-                within("m_flow_set_kg_s", self.m_flow_set_kg_s.unwrap_or(0.0), max, requirement)?
-            }
-            PumpMode::Head | PumpMode::ProportionalHead => {
-                within("head_pa", self.head_pa.unwrap_or(0.0), max, requirement)?
-            }
-        };
-        let starts_at_its_command = self.mode != PumpMode::Speed;
-        Ok(Actuator {
-            position,
-            command: position,
-            unit,
-            initial_command,
-            initial_position: if starts_at_its_command {
-                initial_command
-            } else {
-                self.initial_speed
-            },
-            rise_time_s: not_negative("rise_time_s", self.rise_time_s)?,
-            min: 0.0,
-            max,
-        })
-    }
 }
 
 impl Pump {
@@ -328,11 +270,14 @@ impl Pump {
 
     /// Hydraulic power, W, zero where the pump is off or a resistance, and the efficiency.
     fn pumping(&self, m: f64, state: &EdgeState) -> (f64, f64) {
-        let (head, v) = (-self.loss(m, state).value, m / state.density_kg_m3);
+        // Turning backwards it pumps the other way.
+        let way = if state.position < 0.0 { -1.0 } else { 1.0 };
+        let (head, m) = (-way * self.loss(m, state).value, way * m);
+        let v = m / state.density_kg_m3;
         if m <= 0.0 || head <= 0.0 {
             return (0.0, 1.0);
         }
-        let speed = self.speed(m, state);
+        let speed = way * self.speed(m, state);
         if speed > 0.0 { (v * head, self.efficiency.at(v / speed)) } else { (0.0, 1.0) }
     }
 }
@@ -366,8 +311,8 @@ impl TwoPort for Pump {
     }
 
     fn target_position(&self, command: f64) -> f64 {
-        let target = command.clamp(0.0, self.actuator.max);
-        if self.mode == PumpMode::Speed && target < self.speed_min { 0.0 } else { target }
+        let target = command.clamp(self.actuator.min, self.actuator.max);
+        if self.mode == PumpMode::Speed && target.abs() < self.speed_min { 0.0 } else { target }
     }
 
     fn follows_flow(&self) -> bool {

@@ -157,6 +157,7 @@ class _FeedInPump(TypedDict, total=False):
     initial_speed: float
     speed_min: float
     speed_max: float
+    reversible: bool
     rise_time_s: float
     rise_time_min: float
     rise_time_h: float
@@ -777,6 +778,13 @@ class _StationType:
         ua_kw_k: float | None = None,
         stub: _Stub | None = None,
         interface: _Generator | None = None,
+        hydraulics: Literal["passive", "pumped"] | None = None,
+        gain: float | None = None,
+        integral_time_s: float | None = None,
+        integral_time_min: float | None = None,
+        integral_time_h: float | None = None,
+        integral_time_d: float | None = None,
+        pump: _FeedInPump | None = None,
     ) -> str:
         """Adds `[station_type.ID]` with kind = "balancing_unit".
 
@@ -803,6 +811,16 @@ class _StationType:
         interface
             A resistance as written in a model file: `m_flow_nominal_kg_s` with `dp_nominal_pa`, or `kv_m3_h`,
             or the two columns of a table.
+        hydraulics
+            Whether a pump keeps the lines at the same pressure. One of passive, pumped. Default: passive.
+        gain
+            Proportional gain of that pump: speed per Pa. Default: 2e-05.
+        integral_time_s
+            Integral time of that pump, s. Default: 8.0. Also integral_time_min, integral_time_h,
+            integral_time_d.
+        pump
+            A pump as written in a model file: `head_max_pa` and `free_flow_m3_s`, or the two columns
+            `curve_v_flow_m3_s` and `curve_head_pa`, or `curve_polynomial`.
         """
 
 class _Station:
@@ -1203,6 +1221,13 @@ class _Station:
         ua_kw_k: float | None = None,
         stub: _Stub | None = None,
         interface: _Generator | None = None,
+        hydraulics: Literal["passive", "pumped"] | None = None,
+        gain: float | None = None,
+        integral_time_s: float | None = None,
+        integral_time_min: float | None = None,
+        integral_time_h: float | None = None,
+        integral_time_d: float | None = None,
+        pump: _FeedInPump | None = None,
     ) -> str:
         """Adds `[[station]]` with kind = "balancing_unit".
 
@@ -1227,6 +1252,16 @@ class _Station:
         interface
             A resistance as written in a model file: `m_flow_nominal_kg_s` with `dp_nominal_pa`, or `kv_m3_h`,
             or the two columns of a table.
+        hydraulics
+            Whether a pump keeps the lines at the same pressure. One of passive, pumped. Default: passive.
+        gain
+            Proportional gain of that pump: speed per Pa. Default: 2e-05.
+        integral_time_s
+            Integral time of that pump, s. Default: 8.0. Also integral_time_min, integral_time_h,
+            integral_time_d.
+        pump
+            A pump as written in a model file: `head_max_pa` and `free_flow_m3_s`, or the two columns
+            `curve_v_flow_m3_s` and `curve_head_pa`, or `curve_polynomial`.
         """
     def of_type(
         self,
@@ -1275,7 +1310,7 @@ class _Station:
         generator: _Generator | None = None,
         directions: Literal["both", "feed_in", "extraction"] | None = None,
         extraction: Literal["pump", "valve"] | None = None,
-        hydraulics: Literal["two_pumps", "one_pump"] | None = None,
+        hydraulics: Literal["passive", "pumped"] | None = None,
         flow_control: Literal["pi", "quasi_steady", "ideal"] | None = None,
         gain: float | None = None,
         integral_time_s: float | None = None,
@@ -1363,15 +1398,14 @@ class _Station:
             What makes the flow of extraction: a pump, or a valve where the hot line is under pressure. One of
             pump, valve. Default: pump.
         hydraulics
-            A pump for each direction, or one between two three-way valves. One of two_pumps, one_pump.
-            Default: two_pumps.
+            Whether a pump keeps the lines at the same pressure. One of passive, pumped. Default: passive.
         flow_control
             How the flow is held. Absent: `pi` in steps up to a quarter of the integral time, else
             `quasi_steady`.
         gain
-            Proportional gain of the PI control: speed or opening per kg/s. Default: 0.6.
+            Proportional gain of that pump: speed per Pa. Default: 2e-05.
         integral_time_s
-            Integral time of the PI control, s. Default: 8.0. Also integral_time_min, integral_time_h,
+            Integral time of that pump, s. Default: 8.0. Also integral_time_min, integral_time_h,
             integral_time_d.
         dead_time_s
             Pause of the PI control when the direction changes, s. Default: 5.0. Also dead_time_min,
@@ -1637,6 +1671,7 @@ class _Edge:
         initial_speed: float | None = None,
         speed_min: float | None = None,
         speed_max: float | None = None,
+        reversible: bool | None = None,
         rise_time_s: float | None = None,
         rise_time_min: float | None = None,
         rise_time_h: float | None = None,
@@ -1713,6 +1748,8 @@ class _Edge:
             Below this relative speed the pump is off. Default: 0.0.
         speed_max
             Largest relative speed. Default: 1.0.
+        reversible
+            Whether it turns both ways: a negative speed pumps from b to a, with the same curve.
         rise_time_s
             Time in which the speed, or what else is commanded, follows a step by 99.6 %, s. Default: 8.0. Also
             rise_time_min, rise_time_h, rise_time_d.
@@ -3588,6 +3625,47 @@ class _Unit:
         reversed_for_cold
             Whether the grid water flows from the cold to the hot line while the house is cooled. Default:
             True.
+        """
+    def balancing_exchanger(
+        self,
+        site: str | None = None,
+        *,
+        name: str | None = None,
+        station: str | None = None,
+        id: str | None = None,
+        port: str | None = None,
+        ua_w_k: float | None = None,
+        ua_kw_k: float | None = None,
+        flow_ratio: float | None = None,
+        storage_v_flow_max_m3_s: float | None = None,
+        storage_v_flow_max_l_s: float | None = None,
+        storage_v_flow_max_l_min: float | None = None,
+        storage_v_flow_max_l_h: float | None = None,
+        storage_v_flow_max_m3_h: float | None = None,
+    ) -> str | None:
+        """Adds `[[unit]]` with kind = "balancing_exchanger".
+
+        An exchanger of a balancing unit as written in a model file.
+
+        Parameters
+        ----------
+        site
+            Site whose station it stands behind, or whose circuits it is part of
+        name
+            Name within its site; default unit
+        station
+            Name of the station; default station
+        id
+            Name, where no site is given
+        port
+            Edge it stands on, where no site is given and not all its ports are in circuits
+        ua_w_k
+            Conductance, W/K. Default: 6000.0. Also ua_kw_k.
+        flow_ratio
+            Flow of the storage side over that of the grid. Default: 1.0.
+        storage_v_flow_max_m3_s
+            Largest flow of the storage side, m3/s. Default: 0.001. Also storage_v_flow_max_l_s,
+            storage_v_flow_max_l_min, storage_v_flow_max_l_h, storage_v_flow_max_m3_h.
         """
     def condensing_boiler(
         self,

@@ -148,7 +148,7 @@ pub(super) fn parts_of(kind: StationKind) -> &'static [&'static str] {
             "check_valve",
             "way",
         ],
-        StationKind::BalancingUnit => &["stub", "interface"],
+        StationKind::BalancingUnit => &["stub", "interface", "pump"],
     }
 }
 

@@ -59,6 +59,12 @@ impl ProsumerEntry {
             longest_step_s: self.longest_step_s(control),
             ..InterfaceEntry::watching(names.id.clone())
         };
-        Expanded { nodes, edges, interface, controllers: controller.into_iter().collect() }
+        Expanded {
+            nodes,
+            edges,
+            interface,
+            controllers: controller.into_iter().collect(),
+            sensors: Vec::new(),
+        }
     }
 }

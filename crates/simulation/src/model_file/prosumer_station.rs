@@ -16,15 +16,12 @@
 //! interface.
 
 use super::expand::Plain;
-use super::station_parts::{Expanded, Names, RESISTANCE, default_volume, stub};
+use super::station_parts::{Expanded, LONGEST_STEP, Names, PUMP, RESISTANCE, default_volume, stub};
 use super::{InterfaceEntry, SiteEntry, StationKind, is_null, station_name};
 use crate::document::Tree;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-
-/// A PI controller follows its flow in steps of this share of its integral time at most.
-const LONGEST_STEP: f64 = 0.25;
 
 /// `[[station]]` with `kind = "prosumer"`: pumps deliver the flow that the unit asks for, in its direction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -165,8 +162,6 @@ fn default_dead_time() -> f64 {
     5.0
 }
 
-const PUMP: &[&str] = &["head_max_", "free_flow_", "curve_"];
-
 /// Flow sources for the directions that are there: feed-in, extraction.
 fn ideal(
     names: &Names<'_>,
@@ -185,7 +180,7 @@ fn ideal(
         extraction_set: extracts.then(|| source("extraction_source", "port_cold", "branch_cold")),
         ..InterfaceEntry::watching(names.id.clone())
     };
-    Expanded { nodes, edges, interface, controllers: Vec::new() }
+    Expanded { nodes, edges, interface, controllers: Vec::new(), sensors: Vec::new() }
 }
 
 impl ProsumerEntry {
@@ -322,7 +317,7 @@ impl ProsumerEntry {
             longest_step_s: self.longest_step_s(control),
             id: names.id,
         };
-        Expanded { nodes, edges, interface, controllers }
+        Expanded { nodes, edges, interface, controllers, sensors: Vec::new() }
     }
 
     /// The signal that a part gets its flow by, with the controller that holds it.

@@ -12,6 +12,7 @@ pub(super) struct Expanded {
     pub edges: Vec<Plain>,
     pub interface: InterfaceEntry,
     pub controllers: Vec<Tree>,
+    pub sensors: Vec<Tree>,
 }
 
 /// Names of the station and what it stands between.
@@ -95,6 +96,12 @@ pub(super) fn stub() -> Value {
         "insulation_resistance_k_m_w": 3.78
     })
 }
+
+/// A PI controller follows its station in steps of this share of its integral time at most.
+pub(super) const LONGEST_STEP: f64 = 0.25;
+
+/// How a pump can be described otherwise.
+pub(super) const PUMP: &[&str] = &["head_max_", "free_flow_", "curve_"];
 
 /// How a passage can be described otherwise.
 pub(super) const RESISTANCE: &[&str] = &["kv_", "dp_nominal_", "m_flow_nominal_", "curve_"];

@@ -66,6 +66,10 @@ impl PumpMode {
         density: f64,
         speed_max: f64,
     ) -> Linear {
+        if self == Self::Speed && position < 0.0 {
+            let mirrored = curve.loss(-m, -position, density);
+            return Linear::new(-mirrored.value, mirrored.slope);
+        }
         if self == Self::Speed {
             return curve.loss(m, position, density);
         }
@@ -124,6 +128,9 @@ impl PumpMode {
         density: f64,
         speed_max: f64,
     ) -> f64 {
+        if self == Self::Speed && position < 0.0 {
+            return curve.loss_by_speed(-m, -position, density);
+        }
         if self == Self::Speed {
             return curve.loss_by_speed(m, position, density);
         }

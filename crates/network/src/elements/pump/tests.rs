@@ -256,3 +256,31 @@ fn set_values_of_another_mode_are_refused() {
         PumpParams { mode: PumpMode::Flow, m_flow_set_kg_s: Some(5.0), ..PumpParams::default() };
     assert_eq!(params.build(&Medium::default()).unwrap_err().field(), Some("m_flow_set_kg_s"));
 }
+
+#[test]
+fn a_reversible_pump_is_its_own_mirror_image() {
+    let pump = PumpParams { reversible: true, heat_to_water: Some(1.0), ..PumpParams::default() }
+        .build(&Medium::default())
+        .unwrap();
+    // Forwards at half speed 10 055.25 Pa less 4.72972e4 * 0.09 = 4 256.7 Pa at 0.3 kg/s.
+    assert!((pump.loss(0.3, &state(0.5)).value + 5_798.5).abs() < 0.1);
+    for (m, speed) in [(0.3, 0.5), (0.0, 0.8), (-0.2, 0.6), (0.4, 0.02)] {
+        let (ahead, back) = (state(speed), state(-speed));
+        assert_eq!(pump.loss(-m, &back).value, -pump.loss(m, &ahead).value);
+        assert_eq!(pump.loss(-m, &back).slope, pump.loss(m, &ahead).slope);
+        assert_eq!(pump.electric_power_w(-m, &back), pump.electric_power_w(m, &ahead));
+        assert_eq!(pump.heat_to_water_w(-m, &back), pump.heat_to_water_w(m, &ahead));
+        // Against its sense of turning it is braked: no work.
+        assert_eq!(pump.electric_power_w(m.abs(), &back), Some(0.0));
+    }
+    // The head is continuous through standstill.
+    let near = |speed| pump.loss(0.1, &state(speed)).value;
+    assert!((near(1e-6) - near(-1e-6)).abs() < 1e-6);
+    assert_eq!(pump.target_position(-3.0), -1.0);
+    let wrong = PumpParams { reversible: true, mode: PumpMode::Head, ..PumpParams::default() };
+    assert!(
+        wrong.build(&Medium::default()).unwrap_err().to_string().starts_with("reversible given")
+    );
+    let ahead_only = PumpParams { speed: -0.5, ..PumpParams::default() };
+    assert_eq!(ahead_only.build(&Medium::default()).unwrap_err().field(), Some("speed"));
+}

@@ -4,7 +4,7 @@ use super::components::Words;
 use super::{ModelReader, Stations, place};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Tree, TreeKind};
-use crate::model::InterfaceSpec;
+use crate::model::{InterfaceSpec, Place};
 use crate::model_file::expand;
 use crate::model_file::{
     BalancingUnitEntry, InterfaceEntry, ProsumerEntry, SiteEntry, StationEntry, StationKind,
@@ -219,28 +219,37 @@ impl ModelReader<'_> {
             let (entry, table) = self.reader.read::<ProsumerEntry>(what, tree)?;
             let site = self.site_with_two_lines(what, tree)?;
             let place = place(what, tree, &table);
-            let problems = entry.problems();
-            for (field, message, hint) in &problems {
-                let problem = refused(what, &place, Some(field), message);
-                self.reader.report(problem.with_hint(*hint));
-            }
-            if !problems.is_empty() {
-                return None;
-            }
+            self.report_all(what, &place, &entry.problems())?;
             (entry.expand(&site, tree, what, self.longest_step_s), StationKind::Prosumer, place)
         } else {
             let (entry, table) = self.reader.read::<BalancingUnitEntry>(what, tree)?;
             let site = self.site_with_two_lines(what, tree)?;
-            let expanded = entry.expand(&site, tree, what);
-            (expanded, StationKind::BalancingUnit, place(what, tree, &table))
+            let place = place(what, tree, &table);
+            self.report_all(what, &place, &entry.problems(self.longest_step_s))?;
+            (entry.expand(&site, tree, what), StationKind::BalancingUnit, place)
         };
         self.check_parts(what, kind, tree)?;
         stations.add(self, &expanded.interface, what, tree)?;
         self.add_nodes(expanded.nodes);
         self.add_edges(expanded.edges);
         self.rows.entry("controller").or_default().extend(expanded.controllers);
+        self.rows.entry("sensor").or_default().extend(expanded.sensors);
         interfaces.push(InterfaceSpec { entry: expanded.interface, place });
         Some(())
+    }
+
+    /// Reports what cannot be of a station; `None` where there is something.
+    fn report_all(
+        &mut self,
+        what: &str,
+        place: &Place,
+        problems: &[(&'static str, String, &'static str)],
+    ) -> Option<()> {
+        for (field, message, hint) in problems {
+            let problem = refused(what, place, Some(field), message);
+            self.reader.report(problem.with_hint(*hint));
+        }
+        problems.is_empty().then_some(())
     }
 
     /// The site of a station.
