@@ -92,7 +92,11 @@ enum Command {
         weather: bool,
     },
     /// Print the JSON Schema of the model file
-    Schema,
+    Schema {
+        /// A page in Markdown about every field instead
+        #[arg(long)]
+        markdown: bool,
+    },
     /// Read the network of another program into a model file, or measured series
     Import {
         #[command(subcommand)]
@@ -186,7 +190,7 @@ fn main() -> ExitCode {
             let detail = commands::check::Detail { expand, explain_defaults, signals, weather };
             commands::check::check(&model, detail)
         }
-        Command::Schema => commands::schema::schema(),
+        Command::Schema { markdown } => commands::schema::schema(markdown),
         Command::Import { format } => match format {
             ImportFormat::Epanet { file, out, steady, self_acting } => {
                 commands::import::epanet(&file, &out, EpanetOptions { steady, self_acting })
