@@ -4,12 +4,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python validate peers bench bench-thermal bench-memory bench-peers instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers bench bench-thermal bench-memory bench-peers instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
 
-test: fmt-check lint test-rust test-doc test-python ## Run all checks: what CI runs
+test: fmt-check lint test-rust test-doc test-python test-wheel ## Run all checks: what CI runs
 
 fmt-check: ## Formatting
 	cargo fmt --all -- --check
@@ -46,6 +46,19 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python examples/5gdhc-street/run.py
 	$(BIN)/python examples/soil-study/run.py
 	$(BIN)/python examples/rse-facility/run.py
+
+test-wheel: python ## The wheel in a new environment runs the tutorials as they stand
+	rm -rf target/new-user
+	$(BIN)/maturin build --quiet -m crates/py/Cargo.toml --out target/new-user
+	$(PYTHON) -m venv target/new-user/venv
+	target/new-user/venv/bin/python -m pip install --quiet --disable-pip-version-check \
+		"$$(ls target/new-user/*.whl)[plot]"
+	cd target/new-user && MPLBACKEND=agg venv/bin/python $(CURDIR)/crates/py/new_user.py \
+		$(CURDIR)/docs/src/tutorial-python.md $(CURDIR)/docs/src/tutorial-5gdhc.md
+
+docs: ## The documentation as a book, in target/book
+	cargo install --quiet --locked --root target/mdbook mdbook@0.4.52
+	target/mdbook/bin/mdbook build --dest-dir $(CURDIR)/target/book docs
 
 validate: ## Slow cases, peers, large random sets
 	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 RSE_TESTS=all WEIGHTED_PI=all HUNTING=500 AMBIENT_DAY=1 EXPLAIN=all TABLE_DATE=$$(date +%F) \
