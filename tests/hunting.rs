@@ -10,7 +10,9 @@ use anergy_simulation::model::Model;
 use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::simulation::Simulation;
 use anergy_simulation::stability::hunting::{Hunting, hunting};
+use anergy_tests::pages::write_table;
 use anergy_tests::workspace;
+use std::fmt::Write as _;
 
 /// The example with N feeders, changed by replacing words.
 fn model(n: usize, changes: &[(&str, &str)]) -> Model {
@@ -150,7 +152,10 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
         (0.2, [0.0, 7.6, f64::NAN]),
         (0.3, [2.8, f64::NAN, f64::NAN]),
     ];
+    let mut page =
+        "| gain, per l/min | 1 feeder | 2 feeders | 3 feeders |\n|---|---|---|---|\n".to_owned();
     for (k, row) in table {
+        let _ = write!(page, "| {k:.2} |");
         for (n, expected) in (1..).zip(row) {
             let gain = format!("gain = {}", 60.0 * k);
             let model = model(n, &[("gain = 2.4", &gain)]);
@@ -158,7 +163,13 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
             assert_eq!(analysis(&model).controllers[0].stable, stable, "N = {n}, K = {k}");
             let (flows, events) = run_flows(&model, 1200.0, 1800.0);
             let sizes: Vec<f64> = flows.iter().map(|flow| peak_to_peak(flow)).collect();
-            println!("N = {n}, K = {k}: {sizes:.2?} l/min peak to peak");
+            let found: Vec<String> = sizes.iter().map(|size| format!("{size:.2}")).collect();
+            let given = match expected {
+                0.0 => "stable".to_owned(),
+                given if given.is_nan() => "hunting".to_owned(),
+                given => format!("{given}"),
+            };
+            let _ = write!(page, " {} ({given}) |", found.join(", "));
             let size = sizes[0];
             let said = |kind: &str| events.iter().any(|event| event.kind == kind);
             if stable {
@@ -187,7 +198,9 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
                 assert!((period_s / 10.226 - 1.0).abs() < 0.05, "{period_s}");
             }
         }
+        page.push('\n');
     }
+    write_table("hunting", "gains", "cargo test --workspace --test hunting", &page);
 }
 
 #[test]

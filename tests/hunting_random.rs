@@ -9,6 +9,7 @@ use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::simulation::Simulation;
 use anergy_simulation::stability::hunting::hunting;
 use anergy_tests::Random;
+use anergy_tests::pages::write_table;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -229,10 +230,21 @@ fn analysis_and_simulation_agree_on_what_grows() {
         }
     }
     let share = 1.0 - disagree.len() as f64 / f64::from(judged);
-    println!(
-        "{judged} grids judged, {within} within {BAND} of the limit, {unsolved} without a limit or operating point"
+    let table = format!(
+        "| | grids |\n|---|---|\n| judged | {judged} |\n\
+         | analysis and simulation agree | {} ({:.1} %) |\n\
+         | within {:.0} % of the limit, not judged | {within} |\n\
+         | without an operating point or a limit | {unsolved} |\n",
+        judged as usize - disagree.len(),
+        100.0 * share,
+        100.0 * BAND
     );
-    println!("{:.2} % agree", 100.0 * share);
+    if grids >= 500 {
+        let command = "HUNTING=500 cargo test --workspace --test hunting_random";
+        write_table("hunting", "random grids", command, &table);
+    } else {
+        println!("{table}");
+    }
     disagree.iter().for_each(|line| println!("{line}"));
     assert!(judged * 2 > u32::try_from(grids).unwrap(), "too few grids could be judged");
     assert!(share >= AGREE, "{disagree:#?}");

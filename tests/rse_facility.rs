@@ -18,9 +18,11 @@ use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::overlay::Change;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::pages::write_table;
 use anergy_tests::{reference_data, workspace};
 use serde_json::{Value, json};
 use std::collections::HashMap;
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// The tests of January 2024; the resistances of the example are from the last one.
@@ -286,11 +288,12 @@ fn compare(data: &Path, test: &str, all: bool) -> Vec<String> {
         .iter()
         .map(|(name, model)| (*name, run(model, &sensors, &times_s, step_s)))
         .collect();
-    println!("\n### {test}\n");
-    println!("| sensor | measured mean | NMBE % | CV(RMSE) % | RMSE | {} |", {
-        runs[1..].iter().map(|(name, _)| format!("RMSE {name}")).collect::<Vec<_>>().join(" | ")
-    });
-    println!("|---|--:|--:|--:|--:|{}", "--:|".repeat(runs.len() - 1));
+    let names: Vec<String> = runs[1..].iter().map(|(name, _)| format!("RMSE {name}")).collect();
+    let mut table = format!(
+        "| sensor | measured mean | NMBE % | CV(RMSE) % | RMSE | {} |\n|---|--:|--:|--:|--:|{}\n",
+        names.join(" | "),
+        "--:|".repeat(names.len())
+    );
     let mut missed = Vec::new();
     let at_rows = |sensor: &Sensor| -> Vec<f64> {
         rows.iter().map(|&row| record.column(&sensor.column)[row]).collect()
@@ -301,7 +304,8 @@ fn compare(data: &Path, test: &str, all: bool) -> Vec<String> {
             runs.iter().map(|(_, found)| Errors::of(&found[i], &measured[i], &times_s)).collect();
         let own = errors[0];
         let star = if own.nmbe_percent().abs() > DISCUSSED_PERCENT { " *" } else { "" };
-        println!(
+        let _ = writeln!(
+            table,
             "| {}{star} | {:.2} | {:+.1} | {:.1} | {:.3} | {} |",
             sensor.column,
             own.mean,
@@ -318,6 +322,12 @@ fn compare(data: &Path, test: &str, all: bool) -> Vec<String> {
         }
     }
     leave_curves(test, &sensors, &measured, &runs, &times_s);
+    if all {
+        let command = "RSE_TESTS=all cargo test --release --workspace --test rse_facility";
+        write_table("rse_facility", test, command, &table);
+    } else {
+        println!("{table}");
+    }
     missed
 }
 

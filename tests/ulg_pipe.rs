@@ -17,8 +17,10 @@ use anergy_network::elements::pipe::thermal::WallModel;
 use anergy_network::graph::{Edge, GRAVITY_M_S2, Network, Node, NodeKind};
 use anergy_network::state::NetworkState;
 use anergy_network::transport::Transport;
+use anergy_tests::pages::write_table;
 use anergy_tests::reference_data;
 use std::f64::consts::PI;
+use std::fmt::Write as _;
 
 const ZERO_K: f64 = 273.15;
 const STEP_S: f64 = 1.0;
@@ -133,21 +135,28 @@ fn outlets_of_the_measured_pipe() {
         let Some(record) = record(file, initial) else { return };
         let hottest = record.t_in_degc.iter().fold(0.0_f64, |a, b| a.max(*b));
         let medium = Medium::water(0.5 * (initial.1 + hottest) + ZERO_K);
-        println!(
-            "\n| {file} | RMSE, K | largest, K | RMSE with 22 degC | RMSE with warmer water |"
-        );
-        println!("|---|---|---|---|---|");
-        for wall in [WallModel::None, WallModel::EndVolume, WallModel::Equilibrium, WallModel::Film]
-        {
+        let mut table = "| `wall` | RMSE, K | largest, K | RMSE with 22 degC | \
+                         RMSE with water of the middle temperature |\n|---|---|---|---|---|\n"
+            .to_owned();
+        for (wall, name) in [
+            (WallModel::None, "none"),
+            (WallModel::EndVolume, "end_volume"),
+            (WallModel::Equilibrium, "equilibrium"),
+            (WallModel::Film, "film"),
+        ] {
             let params = pipe(wall);
             let (rms, largest) = errors(&record, &params, Medium::default(), 18.0);
             let (ambient, _) = errors(&record, &params, Medium::default(), 22.0);
             let (warm, _) = errors(&record, &params, medium, 18.0);
-            println!("| {wall:?} | {rms:.3} | {largest:.2} | {ambient:.3} | {warm:.3} |");
+            let _ = writeln!(
+                table,
+                "| `{name}` | {rms:.3} | {largest:.2} | {ambient:.3} | {warm:.3} |"
+            );
             if wall == WallModel::Film {
                 film_k.push(rms);
             }
         }
+        write_table("ulg_pipe", file, "cargo test --workspace --test ulg_pipe", &table);
     }
     assert!(film_k[0] < 0.35 && film_k[1] < 0.12, "{film_k:?}");
 }
