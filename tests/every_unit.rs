@@ -29,6 +29,7 @@ fn least(kind: &str) -> Value {
         }),
         // Warm air, so that its pump runs at night.
         "solar_collector" => json!({ "t_outdoor_k": 350.0 }),
+        "chp" => json!({ "content_j_k": 60_000.0 }),
         "domestic_hot_water" => json!({ "daily_m3": 0.3, "circulation_loss_w": 100.0 }),
         "air_source_heat_pump"
         | "booster_heat_pump"
@@ -38,7 +39,6 @@ fn least(kind: &str) -> Value {
         | "brine_heat_pump"
         | "mixing_station"
         | "condensing_boiler"
-        | "chp"
         | "stirling_chp"
         | "pv"
         | "battery"
@@ -75,6 +75,11 @@ fn outlet_k(outlet: &Outlet, m_flow_kg_s: f64, t_in_k: f64, cp: f64) -> f64 {
         Outlet::Linear { constant_k, of_inlet } => constant_k + of_inlet * t_in_k,
         Outlet::Exchange { w_k, other_k } => {
             let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, capacity_w_k);
+            constant_k + of_inlet * t_in_k
+        }
+        Outlet::Stirred { t_k, heat_w, heat_capacity_j_k, dt_s } => {
+            let (constant_k, of_inlet) =
+                Outlet::of_stirred(t_k, heat_w, heat_capacity_j_k, dt_s, capacity_w_k);
             constant_k + of_inlet * t_in_k
         }
         Outlet::Temperature(_) | Outlet::Ends { .. } => outlet.temperature_k(m_flow_kg_s).unwrap(),

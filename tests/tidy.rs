@@ -161,6 +161,10 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "zeta",
     // Heat pumps: shares, ratios of heat and electricity, counts.
     "aux_modulation",
+    // Branches of a coupling: ratios of pressure losses, shares.
+    "idle_opening",
+    "resistance",
+    "suction",
     "carnot_share",
     "cop",
     "cop_max",

@@ -81,6 +81,17 @@ pub enum Outlet {
         /// Inlet temperature of the other stream, K.
         other_k: f64,
     },
+    /// It passes a stirred content that is heated: it leaves as the content is on average over the step.
+    Stirred {
+        /// Temperature of the content at the start of the step, K.
+        t_k: f64,
+        /// Heat into it besides that of the water, W.
+        heat_w: f64,
+        /// Its heat capacity, J/K.
+        heat_capacity_j_k: f64,
+        /// Length of the step, s; 0 in a steady state.
+        dt_s: f64,
+    },
     /// It approaches a temperature: it leaves with `constant_k + of_inlet T_in`.
     Linear {
         /// What is added, K.
@@ -98,6 +109,7 @@ impl Outlet {
             Self::Temperature(_)
             | Self::Ends { .. }
             | Self::Exchange { .. }
+            | Self::Stirred { .. }
             | Self::Linear { .. } => None,
             Self::HeatFlow(q_w) | Self::Warmed { wanted_w: q_w, .. } => Some(q_w),
             Self::Cooled { wanted_w, .. } => Some(-wanted_w),
@@ -109,6 +121,29 @@ impl Outlet {
     pub fn of_exchange(w_k: f64, other_k: f64, capacity_w_k: f64) -> (f64, f64) {
         let share = if capacity_w_k > w_k { w_k / capacity_w_k } else { 1.0 };
         (share * other_k, 1.0 - share)
+    }
+
+    /// Constant part and share of the inlet temperature with which a flow of this capacity, W/K, leaves a stirred
+    /// content: with `x = W dt/C` and `phi = (1 - e^-x)/x` it is `phi T_0 + (1 - phi) (T_in + Q/W)` on average.
+    #[inline]
+    pub fn of_stirred(
+        t_k: f64,
+        heat_w: f64,
+        heat_capacity_j_k: f64,
+        dt_s: f64,
+        capacity_w_k: f64,
+    ) -> (f64, f64) {
+        if dt_s <= 0.0 {
+            let steady = capacity_w_k > 0.0;
+            return if steady { (heat_w / capacity_w_k, 1.0) } else { (t_k, 0.0) };
+        }
+        let x = capacity_w_k * dt_s / heat_capacity_j_k;
+        // Below, the series of (1 - phi)/x is exact to rounding.
+        let passed_of_x =
+            if x > 1e-4 { (1.0 + (-x).exp_m1() / x) / x } else { 0.5 - x / 6.0 + x * x / 24.0 };
+        let passed = passed_of_x * x;
+        let warmed_k = heat_w * dt_s / heat_capacity_j_k * passed_of_x;
+        ((1.0 - passed) * t_k + warmed_k, passed)
     }
 
     /// The temperature at which a flow leaves where it does not depend on the inlet, K.

@@ -46,6 +46,7 @@ pub const UNITS: &[Unit] = &[
     unit("mwh", "j", 3_600_000_000.0, 1.0),
     unit("kj_kg_k", "j_kg_k", 1000.0, 1.0),
     unit("kw_k", "w_k", 1000.0, 1.0),
+    unit("kj_k", "j_k", 1000.0, 1.0),
     unit("min", "s", 60.0, 1.0),
     unit("h", "s", 3600.0, 1.0),
     unit("d", "s", 86_400.0, 1.0),
@@ -57,7 +58,7 @@ pub const UNITS: &[Unit] = &[
 
 /// SI suffixes that occur in names, longest first where one ends in another.
 pub const SI_SUFFIXES: &[&str] = &[
-    "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "kg_m3", "m2_k_w", "w_m2_k", "m3_s", "m2_s", "m_s",
+    "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "j_k", "kg_m3", "m2_k_w", "w_m2_k", "m3_s", "m2_s", "m_s",
     "kg_s", "pa_s", "1_s", "w_k", "w_m2", "rad", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
 ];
 

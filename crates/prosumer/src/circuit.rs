@@ -10,7 +10,7 @@
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 
 /// Below this share of the inlet that is not kept, the temperature of a circuit is undefined.
-const LEAST_HOLD: f64 = 1e-12;
+pub(crate) const LEAST_HOLD: f64 = 1e-12;
 
 /// Ports in the order of the flow.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub struct Undefined;
 
 /// What limits the temperature of a member that gives off heat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Limit {
+pub(crate) enum Limit {
     None,
     /// The coldest, or the hottest outlet.
     Bound,
@@ -36,13 +36,13 @@ enum Limit {
 
 /// Limits of the members of one circuit, two bits each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-struct Limits(u128);
+pub(crate) struct Limits(u128);
 
 /// As many members as their limits have bits for.
 pub const MOST_MEMBERS: usize = 64;
 
 impl Limits {
-    fn of(self, member: usize) -> Limit {
+    pub(crate) fn of(self, member: usize) -> Limit {
         match (self.0 >> (2 * member)) & 3 {
             0 => Limit::None,
             1 => Limit::Bound,
@@ -50,19 +50,22 @@ impl Limits {
         }
     }
 
-    fn set(&mut self, member: usize, limit: Limit) {
+    pub(crate) fn set(&mut self, member: usize, limit: Limit) {
         self.0 = self.0 & !(3 << (2 * member)) | ((limit as u128) << (2 * member));
     }
 }
 
-/// `c` and `f` of a member.
-fn relation(outlet: &Outlet, limit: Limit, capacity_w_k: f64) -> (f64, f64) {
+/// `c` and `f` of a member that is passed in its direction.
+pub(crate) fn relation(outlet: &Outlet, limit: Limit, capacity_w_k: f64) -> (f64, f64) {
     let warmed = |q_w: f64| if capacity_w_k > 0.0 { (q_w / capacity_w_k, 1.0) } else { (0.0, 1.0) };
     match *outlet {
         Outlet::Temperature(t_k) | Outlet::Ends { b_k: t_k, .. } => (t_k, 0.0),
         Outlet::HeatFlow(q_w) => warmed(q_w),
         Outlet::Linear { constant_k, of_inlet } => (constant_k, of_inlet),
         Outlet::Exchange { w_k, other_k } => Outlet::of_exchange(w_k, other_k, capacity_w_k),
+        Outlet::Stirred { t_k, heat_w, heat_capacity_j_k, dt_s } => {
+            Outlet::of_stirred(t_k, heat_w, heat_capacity_j_k, dt_s, capacity_w_k)
+        }
         Outlet::Cooled { .. } | Outlet::Warmed { .. } => {
             let (q_w, bound_k) = bounded(outlet).unwrap_or_default();
             match limit {
@@ -72,6 +75,19 @@ fn relation(outlet: &Outlet, limit: Limit, capacity_w_k: f64) -> (f64, f64) {
             }
         }
     }
+}
+
+/// Which limit acts on a member that water reaches with a temperature; `None` where it has none.
+pub(crate) fn limit_at(outlet: &Outlet, t_k: f64, capacity_w_k: f64) -> Option<Limit> {
+    let (q_w, bound_k) = bounded(outlet)?;
+    let (c, f) = relation(&Outlet::HeatFlow(q_w), Limit::None, capacity_w_k);
+    // Away from the bound, whichever side it is on.
+    let sign = if q_w > 0.0 { -1.0 } else { 1.0 };
+    Some(match sign * (c + f * t_k - bound_k) {
+        0.0.. => Limit::None,
+        _ if sign * (t_k - bound_k) > 0.0 => Limit::Bound,
+        _ => Limit::Passes,
+    })
 }
 
 /// Heat into the water and the temperature that its outlet does not pass.
@@ -123,18 +139,8 @@ impl Circuit {
                 let (c, f) = of(member);
                 let slot = self.members[member];
                 let t_out_k = c + f * t_k;
-                if let Some((q_w, bound_k)) = bounded(&wanted[slot].outlet) {
-                    let (c, f) = relation(&Outlet::HeatFlow(q_w), Limit::None, capacity_w_k);
-                    // Away from the bound, whichever side it is on.
-                    let sign = if q_w > 0.0 { -1.0 } else { 1.0 };
-                    next.set(
-                        member,
-                        match sign * (c + f * t_k - bound_k) {
-                            0.0.. => Limit::None,
-                            _ if sign * (t_k - bound_k) > 0.0 => Limit::Bound,
-                            _ => Limit::Passes,
-                        },
-                    );
+                if let Some(limit) = limit_at(&wanted[slot].outlet, t_k, capacity_w_k) {
+                    next.set(member, limit);
                 }
                 got[slot] = PortFlow { m_flow_kg_s, t_in_k: t_k, t_out_k };
                 t_k = t_out_k;

@@ -5,6 +5,7 @@ pub mod burner;
 pub mod calendar;
 pub mod circuit;
 pub mod compressor;
+pub mod coupling;
 pub mod direct_exchange;
 pub mod equipment;
 pub mod ground_source;

@@ -3,6 +3,7 @@
 mod circuits;
 mod commands;
 mod control;
+mod couplings;
 mod losses;
 mod meters;
 mod network;
@@ -211,6 +212,7 @@ impl Builder<'_> {
             units,
             grid_ports: houses.grid_ports,
             circuits: houses.circuits,
+            couplings: houses.couplings,
             follows: Vec::new(),
             sensors: Vec::new(),
             controllers: Vec::new(),

@@ -1,7 +1,7 @@
 //! Cuts a sub-graph out of a model: its cut nodes become boundaries driven by series.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::model::{DriverSpec, Model, Place};
+use crate::model::{CircuitSpec, DriverSpec, Model, Place};
 use crate::model_file::{Interpolation, NodeEntryKind};
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::WITHOUT_PORTS;
@@ -121,7 +121,17 @@ impl Model {
         loop {
             let before = kept_units.len();
             for circuit in &model.circuits {
-                let passes = |unit: &SmolStr| circuit.through.iter().any(|member| of(member, unit));
+                // Branches that meet belong together.
+                let meet = |other: &&CircuitSpec| match (&circuit.branch, &other.branch) {
+                    (Some(a), Some(b)) => {
+                        [&a.from, &a.to].iter().any(|p| **p == b.from || **p == b.to)
+                    }
+                    _ => other.id == circuit.id,
+                };
+                let passes = |unit: &SmolStr| {
+                    let mut together = model.circuits.iter().filter(meet);
+                    together.any(|other| other.through.iter().any(|member| of(member, unit)))
+                };
                 if kept_units.iter().any(passes) {
                     let units = model.units.iter().map(|unit| &unit.id);
                     kept_units.extend(units.filter(|unit| passes(unit)).cloned());

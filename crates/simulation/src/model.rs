@@ -20,6 +20,8 @@ use anergy_control::sensor::SensorEntry;
 use anergy_core::medium::Medium;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use smol_str::SmolStr;
 use std::path::Path;
@@ -77,8 +79,31 @@ pub struct CircuitSpec {
     pub through: Vec<SmolStr>,
     /// Flow of its own pump while nothing drives it, m3/s.
     pub v_flow_m3_s: Option<f64>,
+    /// The points between which it is a branch; `None` where it is closed in itself.
+    pub branch: Option<BranchSpec>,
     /// Where it stands.
     pub place: Place,
+}
+
+/// What a circuit is between two points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BranchSpec {
+    /// Point at which positive flow enters.
+    #[schemars(with = "String")]
+    pub from: SmolStr,
+    /// Point at which positive flow leaves.
+    #[schemars(with = "String")]
+    pub to: SmolStr,
+    /// Pressure loss over the square of the flow; only ratios count.
+    pub resistance: Option<f64>,
+    /// How far it is open while its pump is off, 0 to 1.
+    pub idle_opening: f64,
+    /// Share of what the strongest parallel pump delivers more that it draws with it.
+    pub suction: f64,
+    /// Whether its pump holds its flow also where others push more through it.
+    pub throttled: bool,
+    /// Whether a check valve keeps water from flowing back while the pump is off.
+    pub check_valve: bool,
 }
 
 /// A hydraulic interface.

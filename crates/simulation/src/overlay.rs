@@ -2,11 +2,11 @@
 //!
 //! An overlay names a component and what to change; its neutral value leaves the model identical.
 
-use crate::model::{DriverSpec, EdgeSpec, Model, Place};
+use crate::model::{BranchSpec, DriverSpec, EdgeSpec, Model, Place};
 use crate::model_file::GroundEntry;
 use anergy_network::elements::ElementParams;
 use anergy_prosumer::equipment::EquipmentParams;
-use serde_json::Value;
+use serde_json::{Value, json};
 use smol_str::{SmolStr, format_smolstr};
 use thiserror::Error;
 
@@ -205,7 +205,7 @@ impl Model {
         Ok(())
     }
 
-    /// Changes a field of an edge, a unit, the ground or the initial temperature.
+    /// Changes a field of an edge, a unit, a circuit between points, the ground or the initial temperature.
     fn change_parameter(
         &mut self,
         parameter: &str,
@@ -227,9 +227,16 @@ impl Model {
                 deserialized(parameter, EquipmentParams::deserialize(unit.params.kind(), value))?;
             return Ok(());
         }
+        if let Some(circuit) = self.circuits.iter_mut().find(|circuit| circuit.id == component) {
+            let schema = schemars::schema_for!(BranchSpec);
+            let branch = circuit.branch.as_mut().ok_or_else(unknown)?;
+            let value = changed(parameter, field, json!(branch), Some(&schema), new)?;
+            *branch = deserialized(parameter, Some(serde_json::from_value(value)))?;
+            return Ok(());
+        }
         if component == "ground" && self.ground.has(field) {
             let schema = schemars::schema_for!(GroundEntry);
-            let ground = serde_json::json!(self.ground);
+            let ground = json!(self.ground);
             let value = changed(parameter, field, ground, Some(&schema), new)?;
             self.ground = deserialized(parameter, Some(serde_json::from_value(value)))?;
             return Ok(());

@@ -84,7 +84,10 @@ impl Model {
                         "through": circuit.through,
                         "v_flow_m3_s": circuit.v_flow_m3_s,
                     });
-                    without_nulls(whole)
+                    without_nulls(match &circuit.branch {
+                        Some(branch) => joined(whole, json!(branch)),
+                        None => whole,
+                    })
                 })
                 .collect(),
         );

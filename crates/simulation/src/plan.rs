@@ -22,7 +22,8 @@ use anergy_network::interface::Station;
 use anergy_network::state::NetworkState;
 pub(crate) use control::{PlannedController, PlannedSensor, SwingWatch};
 pub(crate) use houses::{
-    GridPort, OfSite, PlannedCircuit, PlannedDrive, PlannedUnit, SiteInput, UnitFlag,
+    GridPort, OfSite, PlannedCircuit, PlannedCoupling, PlannedDrive, PlannedUnit, SiteInput,
+    UnitFlag,
 };
 use smol_str::SmolStr;
 use std::sync::{Arc, OnceLock};
@@ -201,6 +202,7 @@ pub struct Plan {
     pub(crate) grid_ports: Vec<GridPort>,
     /// Those with ports that lead first.
     pub(crate) circuits: Vec<PlannedCircuit>,
+    pub(crate) couplings: Vec<PlannedCoupling>,
     /// Signals that follow another one: to, from.
     pub(crate) follows: Vec<(SignalId, SignalId)>,
     pub(crate) sensors: Vec<PlannedSensor>,

@@ -38,6 +38,12 @@ impl Transport {
                             Outlet::of_exchange(w_k, other_k, m.abs() * cp);
                         Relation { constant_k, of_inlet, ..Relation::PASS }
                     }
+                    Outlet::Stirred { t_k, heat_w, heat_capacity_j_k, dt_s } => {
+                        let capacity = m.abs() * cp;
+                        let (constant_k, of_inlet) =
+                            Outlet::of_stirred(t_k, heat_w, heat_capacity_j_k, dt_s, capacity);
+                        Relation { constant_k, of_inlet, ..Relation::PASS }
+                    }
                     Outlet::Linear { constant_k, of_inlet } => {
                         Relation { constant_k, of_inlet, ..Relation::PASS }
                     }
@@ -125,6 +131,11 @@ impl Transport {
             Outlet::Linear { constant_k, of_inlet } => constant_k + of_inlet * t_k,
             Outlet::Exchange { w_k, other_k } => {
                 let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, capacity);
+                constant_k + of_inlet * t_k
+            }
+            Outlet::Stirred { t_k: content_k, heat_w, heat_capacity_j_k, dt_s } => {
+                let (constant_k, of_inlet) =
+                    Outlet::of_stirred(content_k, heat_w, heat_capacity_j_k, dt_s, capacity);
                 constant_k + of_inlet * t_k
             }
             Outlet::HeatFlow(q_w) => t_k + rise_k(q_w),

@@ -10,7 +10,7 @@
 //! stops where its smallest load overshoots by `BAND_K`, and starts again where it no longer does. Return and
 //! supply above their limits stop the unit; it may start again when both are below by the restart difference.
 //!
-//! **Assumptions** no water content. Where the water takes less heat than planned (less flow, a supply that would be too hot),
+//! **Assumptions** no water content, unless an engine is given one ([`engine`]). Where the water takes less heat than planned (less flow, a supply that would be too hot),
 //! fuel and electricity shrink in proportion. **Validity** that of each map, whose arguments are clamped. **Numerics** map and limits take the
 //! return temperature of the step before; what the water got is booked.
 //!
@@ -18,6 +18,8 @@
 
 pub mod boiler;
 pub mod chp;
+mod engine;
+mod flow;
 pub mod map;
 pub mod stirling;
 
@@ -25,52 +27,16 @@ use crate::burner::{Burner, BurnerState, Command, Means};
 use crate::thermal_unit::{
     Exchange, Flag, ThermalUnit, UnitInput, UnitOutput, UnitPort, capacity_w_k,
 };
-use anergy_core::medium::Medium;
+use anergy_core::medium::{Medium, ZERO_CELSIUS_K};
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
+use engine::EngineContent;
+use flow::{FlowRule, FlowWish};
+pub use flow::{GeneratorCommand, GeneratorFlow};
 use map::SteadyMap;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// The set supply may be missed by this before a unit that holds it stops, K.
 const BAND_K: f64 = 5.0;
-/// A supply that is held leaves at least this above the return, K.
-const LEAST_DIFFERENCE_K: f64 = 0.5;
-
-/// How the pump of a generator sets its flow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GeneratorFlow {
-    /// Supply and return differ by a given temperature.
-    ConstantTemperatureDifference,
-    /// They differ as measured at the reference boiler: less than the given temperature at part load.
-    MeasuredTemperatureDifference,
-    /// The flow is given, the temperature difference floats.
-    ConstantFlow,
-    /// The flow is set so that the water leaves with the set supply temperature.
-    ConstantSupply,
-}
-
-/// What the command of a generator is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GeneratorCommand {
-    /// The load, `modulation`.
-    Power,
-    /// The supply temperature, `supply_set_k`, with a constant flow; `modulation` above 0 releases it.
-    SupplyTemperature,
-}
-
-/// How the flow follows from the heat.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum FlowRule {
-    Difference(f64),
-    Measured(f64),
-    /// Capacity flow, W/K.
-    Flow(f64),
-    /// Largest capacity flow, W/K.
-    Supply(f64),
-}
 
 /// Where the unit stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,6 +62,8 @@ pub struct Combustion {
     command: GeneratorCommand,
     flow: FlowRule,
     limits: Limits,
+    /// The content of an engine, where it has one.
+    engine: Option<EngineContent>,
     /// Electricity while nothing burns, and while something does, W.
     idle_w: f64,
     running_w: f64,
@@ -133,6 +101,8 @@ struct Plan {
     next_aux: BurnerState,
     tripped: bool,
     overshot: bool,
+    /// Whether the pump of an engine with a content runs.
+    pump: bool,
     m_flow_kg_s: f64,
 }
 
@@ -173,22 +143,20 @@ impl Combustion {
             0.0
         };
         let flow_heat_w = main.flow_heat_w + aux.flow_heat_w + rod_w;
-        let capacity_w_k = match self.flow {
-            FlowRule::Difference(difference_k) => flow_heat_w / difference_k,
-            FlowRule::Measured(difference_k) => {
-                flow_heat_w / (difference_k * map::measured_share(main.modulation, return_k))
-            }
-            FlowRule::Flow(capacity_w_k) => {
-                let rod = if rod_w > 0.0 { 1.0 } else { 0.0 };
-                capacity_w_k * main.flow.max(aux.flow).max(rod)
-            }
-            FlowRule::Supply(most_w_k) => {
-                let lift_k = (signals.get(SUPPLY_SET) - return_k).max(LEAST_DIFFERENCE_K);
-                (flow_heat_w / lift_k).min(most_w_k)
-            }
+        let rod = if rod_w > 0.0 { 1.0 } else { 0.0 };
+        let wish = FlowWish {
+            heat_w: flow_heat_w,
+            modulation: main.modulation,
+            return_k,
+            supply_set_k: signals.get(SUPPLY_SET),
+            flow: main.flow.max(aux.flow).max(rod),
         };
+        let pump = self.engine.is_none_or(|engine| {
+            engine.pump(state[self.engine_at()], state[self.engine_at() + 1] != 0.0, &main)
+        });
+        let capacity_w_k = if pump { self.flow.capacity_w_k(&wish) } else { 0.0 };
         let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
-        Plan { main, aux, rod_w, next_main, next_aux, tripped, overshot, m_flow_kg_s }
+        Plan { main, aux, rod_w, next_main, next_aux, tripped, overshot, pump, m_flow_kg_s }
     }
 
     /// The load that is asked for, and whether its smallest one overshoots a set supply.
@@ -215,8 +183,8 @@ impl Combustion {
         (map::solved(heat_w, wanted_w, least), false)
     }
 
-    /// A state of the burners, behind what the unit itself remembers.
-    fn state_len(&self) -> usize {
+    /// Where the state of the engine begins: behind that of the burners.
+    fn engine_at(&self) -> usize {
         BURNERS + BurnerState::LEN * if self.aux.is_some() { 2 } else { 1 }
     }
 }
@@ -270,15 +238,25 @@ impl ThermalUnit for Combustion {
                 UnitOutput::new("rod_w", "W"),
             ]);
         }
+        if self.engine.is_some() {
+            outputs.extend([
+                UnitOutput::new("t_engine_k", "K"),
+                UnitOutput::new("loss_w", "W"),
+                UnitOutput::new("loss_j", "J"),
+            ]);
+        }
         outputs
     }
 
     fn initial_state(&self, initial_k: f64) -> Vec<f64> {
-        let mut state = vec![0.0; self.state_len()];
+        let mut state = vec![0.0; self.engine_at()];
         state[RETURN_K] = initial_k;
         state[SUPPLY_K] = initial_k;
         for burner in state[BURNERS..].chunks_exact_mut(BurnerState::LEN) {
             BurnerState::new().write(burner);
+        }
+        if let Some(engine) = self.engine {
+            state.extend([engine.initial_k.unwrap_or(initial_k), 0.0, 0.0]);
         }
         state
     }
@@ -301,6 +279,12 @@ impl ThermalUnit for Combustion {
         let (m_flow_kg_s, heat_w) = (plan.m_flow_kg_s, plan.heat_w());
         // The supply is no hotter where the water arrives warmer than in the step before.
         let outlet = match self.flow {
+            _ if self.engine.is_some() => {
+                let engine = &state[self.engine_at()..];
+                self.engine.map_or(Outlet::HeatFlow(heat_w), |content| {
+                    content.outlet(engine[0], heat_w, state[STEP_S])
+                })
+            }
             FlowRule::Supply(_) if heat_w > 0.0 && m_flow_kg_s > 0.0 => {
                 let planned_k = heat_w / capacity_w_k(&self.medium, m_flow_kg_s);
                 let hottest_k = signals.get(SUPPLY_SET).max(state[RETURN_K] + planned_k);
@@ -325,7 +309,11 @@ impl ThermalUnit for Combustion {
         let q_w = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
         // What the water took of what was planned.
         let planned_w = plan.heat_w();
-        let share = if planned_w > 0.0 { (q_w / planned_w).clamp(0.0, 1.0) } else { 1.0 };
+        let share = match planned_w {
+            // A content takes it all.
+            0.0.. if planned_w > 0.0 && self.engine.is_none() => (q_w / planned_w).clamp(0.0, 1.0),
+            _ => 1.0,
+        };
         let on = plan.main.on.max(plan.aux.on);
         let own_w = self.idle_w * (1.0 - on) + self.running_w * on;
         let rod_w = share * plan.rod_w;
@@ -370,7 +358,25 @@ impl ThermalUnit for Combustion {
                 rod_w,
             ]);
         }
-        Exchange { electric_w, external_w: q_w - electric_w }
+        let mut kept_w = 0.0;
+        if let Some(content) = self.engine {
+            let at = self.engine_at();
+            let engine = &mut state[at..];
+            let lost_w = content.lost_w(engine[0], dt_s);
+            kept_w = if dt_s > 0.0 { planned_w - lost_w - q_w } else { 0.0 };
+            engine[0] += dt_s * kept_w / content.heat_capacity_j_k;
+            engine[1] = f64::from(u8::from(plan.pump));
+            engine[2] += dt_s * lost_w;
+            out[15..].copy_from_slice(&[engine[0], lost_w, engine[2]]);
+        }
+        Exchange { electric_w, external_w: q_w + kept_w - electric_w }
+    }
+
+    fn stored_j(&self, state: &[f64]) -> f64 {
+        let held = |content: EngineContent| {
+            content.heat_capacity_j_k * (state[self.engine_at()] - ZERO_CELSIUS_K)
+        };
+        self.engine.map_or(0.0, held)
     }
 
     fn flags(&self) -> &'static [Flag] {

@@ -70,7 +70,8 @@ impl Builder<'_> {
             }
             members.push((unit, port, slot));
         }
-        if !(2..=MOST_MEMBERS).contains(&members.len()) {
+        let least = if spec.branch.is_some() { 1 } else { 2 };
+        if !(least..=MOST_MEMBERS).contains(&members.len()) {
             let ports = if members.len() == 1 { "port" } else { "ports" };
             let message = format!("{what}: passes {} {ports}", members.len());
             let hint = format!("a circuit passes 2 to {MOST_MEMBERS}, and returns to the first");
@@ -84,6 +85,8 @@ impl Builder<'_> {
         let drivers = usize::from(driver.is_some()) + drivers.count();
         match (drivers, spec.v_flow_m3_s) {
             (1, None) | (0, Some(0.0..)) => {}
+            // A branch without a pump takes what comes.
+            (0, None) if spec.branch.is_some() => {}
             (0, None) => {
                 let message = format!("{what}: nothing sets its flow");
                 let hint = format!("none of {} has a pump: give v_flow_l_min", names.join(", "));

@@ -98,7 +98,7 @@ impl Builder<'_> {
             // Without all edges there are not all stations: what is missing has been reported.
             let Some(edge) = stations.get(station).map(|station| station.edge) else { continue };
             let Some(port) = houses.edges.iter().position(|port| *port == edge) else {
-                if houses.circuits.len() < model.circuits.len() {
+                if !houses.circuits_whole {
                     continue;
                 }
                 let message = format!("{what}: no unit asks it for a flow");

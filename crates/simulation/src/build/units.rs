@@ -5,7 +5,7 @@ use super::signals::{Writer, temperature_signal};
 use crate::diagnostic::did_you_mean;
 use crate::model::UnitSpec;
 use crate::model_file::InterfaceEntry;
-use crate::plan::{GridPort, PlannedCircuit, PlannedUnit};
+use crate::plan::{GridPort, PlannedCircuit, PlannedCoupling, PlannedUnit};
 use crate::temperatures::SURROUNDINGS;
 use crate::wording::refused;
 use anergy_core::clock::NS_PER_S;
@@ -25,7 +25,11 @@ pub(super) struct Houses {
     pub equipment: Vec<Option<Equipment>>,
     pub ports: Vec<Vec<UnitPort>>,
     pub slots: Vec<Range<usize>>,
+    /// Those that are closed in themselves, and those that meet in points.
     pub circuits: Vec<PlannedCircuit>,
+    pub couplings: Vec<PlannedCoupling>,
+    /// Whether all circuits of the model could be built.
+    pub circuits_whole: bool,
     pub grid_ports: Vec<GridPort>,
     /// Edge of each grid port.
     pub edges: Vec<EdgeId>,
@@ -60,14 +64,23 @@ impl Builder<'_> {
             ports,
             slots,
             circuits: Vec::new(),
+            couplings: Vec::new(),
+            circuits_whole: true,
             grid_ports: Vec::new(),
             edges: Vec::new(),
             by_name: units.iter().enumerate().map(|(i, unit)| (unit.id.clone(), i)).collect(),
         };
         let mut circuit_of: Vec<Option<&str>> = vec![None; houses.slots()];
+        let mut branches = Vec::new();
         for spec in &self.model.circuits {
-            let circuit = self.circuit(spec, &houses, &mut circuit_of);
-            houses.circuits.extend(circuit);
+            match (self.circuit(spec, &houses, &mut circuit_of), &spec.branch) {
+                (None, _) => houses.circuits_whole = false,
+                (Some(circuit), None) => houses.circuits.push(circuit),
+                (Some(circuit), Some(branch)) => branches.push((spec, branch, circuit)),
+            }
+        }
+        if houses.circuits_whole {
+            houses.couplings = self.couplings(branches);
         }
         houses.circuits.sort_by_key(|circuit| circuit.leads.is_empty());
         self.grid_ports(&mut houses, &circuit_of, edge_ids);
@@ -118,7 +131,7 @@ impl Builder<'_> {
             let name =
                 |slot: usize| houses.ports[unit][slot - houses.slots[unit].start].name.clone();
             if more.is_some() || spec.port.is_empty() {
-                if houses.circuits.len() < self.model.circuits.len() {
+                if !houses.circuits_whole {
                     // One that is wrong may be that of the port.
                     continue;
                 }
@@ -254,7 +267,8 @@ impl Builder<'_> {
                 writers.insert(command, Writer { what, span: spec.place.span });
             }
         }
-        for circuit in &mut houses.circuits {
+        let branches = houses.couplings.iter_mut().flat_map(|coupling| &mut coupling.circuits);
+        for circuit in houses.circuits.iter_mut().chain(branches) {
             let spec = self.model.circuits.iter().find(|spec| spec.id == circuit.name);
             if let Some((spec, initial)) = spec.and_then(|spec| Some((spec, spec.v_flow_m3_s?))) {
                 let name = format!("{}.v_flow_m3_s", spec.id);

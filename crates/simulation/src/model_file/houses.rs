@@ -77,4 +77,44 @@ pub struct CircuitEntry {
     /// Flow of its own pump while nothing drives it, m3/s. Absent: one of its units sets the flow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub v_flow_m3_s: Option<f64>,
+    /// Point at which its water comes from others, for a circuit that is a branch between two points: `from = "return"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
+    /// Point at which its water goes to others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<String>,
+    /// Of a branch: pressure loss over the square of the flow; only ratios count. 25 with a pump, 1 without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resistance: Option<f64>,
+    /// Of a branch with a pump: how far it is open while its pump is off, 0 (automatic valve, default) to 1 (none).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub idle_opening: Option<f64>,
+    /// Of a branch with a pump: share of what the strongest parallel pump delivers more that it draws with it; 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub suction: Option<f64>,
+    /// Of a branch with a pump: whether it holds its flow also where others push more through it; true.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub throttled: Option<bool>,
+    /// Of a branch with a pump: whether a check valve keeps water from flowing back while the pump is off; false.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub check_valve: Option<bool>,
+}
+
+impl CircuitEntry {
+    /// The field of a branch that is given where it is no branch, or `from` or `to` where the other is missing.
+    pub(super) fn misplaced(&self) -> Option<&'static str> {
+        let given = [
+            ("resistance", self.resistance.is_some()),
+            ("idle_opening", self.idle_opening.is_some()),
+            ("suction", self.suction.is_some()),
+            ("throttled", self.throttled.is_some()),
+            ("check_valve", self.check_valve.is_some()),
+        ];
+        match (&self.from, &self.to) {
+            (Some(_), Some(_)) => None,
+            (Some(_), None) => Some("from"),
+            (None, Some(_)) => Some("to"),
+            (None, None) => given.into_iter().find(|(_, given)| *given).map(|(field, _)| field),
+        }
+    }
 }

@@ -5,6 +5,7 @@ use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_network::interface::Drive;
 use anergy_prosumer::circuit::Circuit;
+use anergy_prosumer::coupling::Coupling;
 use anergy_prosumer::equipment::Equipment;
 use anergy_prosumer::thermal_unit::{Flag, UnitPort};
 use smol_str::SmolStr;
@@ -100,6 +101,14 @@ pub(crate) struct PlannedCircuit {
     pub v_flow: Option<SignalId>,
     /// Units with ports in it that lead, and those ports.
     pub leads: Vec<(usize, usize)>,
+}
+
+/// Circuits of a house that meet in points.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedCoupling {
+    /// The branches, in the order of the coupling's.
+    pub circuits: Vec<PlannedCircuit>,
+    pub coupling: Coupling,
 }
 
 impl Plan {

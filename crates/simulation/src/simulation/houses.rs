@@ -2,11 +2,12 @@
 
 use super::Simulation;
 use crate::error::RunError;
-use crate::plan::{PlannedDrive, PlannedUnit};
+use crate::plan::{PlannedCircuit, PlannedDrive, PlannedUnit};
 use anergy_core::clock::Time;
 use anergy_core::recorder::{Event, Severity};
 use anergy_core::signal::Signals;
 use anergy_prosumer::circuit::Undefined;
+use anergy_prosumer::coupling::{BranchFlows, MOST_BRANCHES};
 use anergy_prosumer::thermal_unit::UnitPort;
 
 impl Simulation {
@@ -25,6 +26,18 @@ impl Simulation {
             let circuit = &self.plan.circuits[circuit].circuit;
             for slot in circuit.members.iter().filter(|slot| Some(**slot) != circuit.driver) {
                 self.state.unit_ports[*slot].m_flow_kg_s = m_flow_kg_s;
+            }
+        }
+        for coupling in 0..self.plan.couplings.len() {
+            let flows = self.branch_flows(coupling);
+            let planned = &self.plan.couplings[coupling];
+            for ((circuit, branch), flow) in
+                planned.circuits.iter().zip(&planned.coupling.branches).zip(flows)
+            {
+                let driver = circuit.circuit.driver;
+                for slot in branch.members.iter().filter(|slot| Some(**slot) != driver) {
+                    self.state.unit_ports[*slot].m_flow_kg_s = flow;
+                }
             }
         }
         for unit in 0..self.plan.units.len() {
@@ -54,7 +67,21 @@ impl Simulation {
 
     /// Flow of a circuit, kg/s.
     fn circuit_kg_s(&self, circuit: usize) -> f64 {
-        let planned = &self.plan.circuits[circuit];
+        self.pumped_kg_s(&self.plan.circuits[circuit])
+    }
+
+    /// Flows of the branches of a coupling, kg/s.
+    fn branch_flows(&self, coupling: usize) -> BranchFlows {
+        let planned = &self.plan.couplings[coupling];
+        let mut wanted_kg_s = [0.0; MOST_BRANCHES];
+        for (wanted, circuit) in wanted_kg_s.iter_mut().zip(&planned.circuits) {
+            *wanted = self.pumped_kg_s(circuit);
+        }
+        planned.coupling.flows(&wanted_kg_s)
+    }
+
+    /// What the pump of a circuit is asked for, kg/s.
+    fn pumped_kg_s(&self, planned: &PlannedCircuit) -> f64 {
         match planned.v_flow {
             Some(signal) => {
                 self.state.signals[signal.index()] * self.plan.network.medium.density_kg_m3
@@ -111,9 +138,11 @@ impl Simulation {
                 self.respond(place.unit, port);
             }
         }
-        for circuit in 0..self.plan.circuits.len() {
-            self.go_round(circuit)?;
-        }
+        // What a port that leads got is known before the others of its unit are passed.
+        let leading = self.plan.circuits.partition_point(|circuit| !circuit.leads.is_empty());
+        (0..leading).try_for_each(|circuit| self.go_round(circuit))?;
+        (0..self.plan.couplings.len()).try_for_each(|coupling| self.meet(coupling))?;
+        (leading..self.plan.circuits.len()).try_for_each(|circuit| self.go_round(circuit))?;
         self.advance_in_turn(dt_s);
         Ok(())
     }
@@ -187,6 +216,26 @@ impl Simulation {
         for lead in 0..planned.leads.len() {
             let (unit, port) = self.plan.circuits[i].leads[lead];
             self.respond(unit, port);
+        }
+        Ok(())
+    }
+
+    /// The temperatures of the points of a coupling, and along its branches.
+    fn meet(&mut self, i: usize) -> Result<(), RunError> {
+        let flows = self.branch_flows(i);
+        let planned = &self.plan.couplings[i];
+        let heat_capacity_j_kg_k = self.plan.network.medium.heat_capacity_j_kg_k;
+        let ports = &mut self.state.unit_ports;
+        let solved = planned.coupling.solve(&flows, heat_capacity_j_kg_k, &self.wanted, ports);
+        solved.map_err(|Undefined| RunError::UndefinedCircuit {
+            time: self.state.time.to_string(),
+            circuit: planned.circuits[0].name.to_string(),
+        })?;
+        for circuit in 0..self.plan.couplings[i].circuits.len() {
+            for lead in 0..self.plan.couplings[i].circuits[circuit].leads.len() {
+                let (unit, port) = self.plan.couplings[i].circuits[circuit].leads[lead];
+                self.respond(unit, port);
+            }
         }
         Ok(())
     }

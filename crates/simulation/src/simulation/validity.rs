@@ -20,7 +20,7 @@ impl Simulation {
         if let Some(port) = state.t_secondary_k.iter().position(|t_k| !liquid(t_k)) {
             return Err(self.left(time, plan.unit_at(port), state.t_secondary_k[port]));
         }
-        if !plan.circuits.is_empty() {
+        if !plan.circuits.is_empty() || !plan.couplings.is_empty() {
             for unit in &plan.units {
                 let ports = &self.state.unit_ports[unit.slots.clone()];
                 let ends = ports.iter().flat_map(|port| [port.t_in_k, port.t_out_k]);

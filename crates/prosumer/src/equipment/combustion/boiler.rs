@@ -1,7 +1,8 @@
 //! A condensing gas boiler as written in a model file: every number has the value of the reference unit of 14 kW.
 
+use super::flow::flow_rule;
 use super::map::{BoilerTable, SteadyMap};
-use super::{Combustion, FlowRule, GeneratorCommand, GeneratorFlow, Limits, Stage};
+use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
 use crate::equipment::liquid;
 use crate::heat_pump::rows_over_time;
@@ -230,6 +231,7 @@ impl CondensingBoilerParams {
                 supply_max_k: liquid("supply_max_k", self.supply_max_k)?,
                 restart_k: self.restart_difference_k,
             },
+            engine: None,
             idle_w: self.idle_w,
             running_w: self.idle_w,
             size: if table { 1.0 } else { self.nominal_w / MEASURED_W },
@@ -242,22 +244,5 @@ impl CondensingBoilerParams {
             ],
             medium: *medium,
         })
-    }
-}
-
-/// How the flow follows, from the fields of a model file: difference, K, constant and largest flow, m3/s.
-pub(super) fn flow_rule(
-    medium: &Medium,
-    control: GeneratorFlow,
-    difference_k: f64,
-    (v_flow_m3_s, v_flow_max_m3_s): (f64, f64),
-) -> FlowRule {
-    let capacity_w_k =
-        |v_flow_m3_s: f64| v_flow_m3_s * medium.density_kg_m3 * medium.heat_capacity_j_kg_k;
-    match control {
-        GeneratorFlow::ConstantTemperatureDifference => FlowRule::Difference(difference_k),
-        GeneratorFlow::MeasuredTemperatureDifference => FlowRule::Measured(difference_k),
-        GeneratorFlow::ConstantFlow => FlowRule::Flow(capacity_w_k(v_flow_m3_s)),
-        GeneratorFlow::ConstantSupply => FlowRule::Supply(capacity_w_k(v_flow_max_m3_s)),
     }
 }

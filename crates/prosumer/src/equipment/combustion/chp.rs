@@ -1,6 +1,7 @@
 //! A gas engine with heat and power as written in a model file: sizes of 2, 5 and 18 kW of electricity.
 
-use super::boiler::flow_rule;
+use super::engine::EngineContent;
+use super::flow::flow_rule;
 use super::map::SteadyMap;
 use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
@@ -35,6 +36,9 @@ const START: [[f64; 5]; 13] = [
     [825.0, 1.0, 1.0, 1.0, 1.0],
 ];
 
+/// Time of the start in which the fuel is lit, s.
+const IGNITION_S: f64 = 56.0;
+
 /// Its stop: the engine gives no electricity from 5 s on, its pump goes on with the heat of the engine.
 const STOP: [[f64; 5]; 6] = [
     [0.0, 1.0, 0.0, 1.0, 1.0],
@@ -44,6 +48,17 @@ const STOP: [[f64; 5]; 6] = [
     [76.0, 0.43, 0.0, -0.05, 0.43],
     [84.0, 0.0, 0.0, -0.05, 0.0],
 ];
+
+/// Start of an engine with a content: its heat from ignition on; the pump follows the content.
+fn into_content([time_s, _, fuel, power, _]: [f64; 5]) -> [f64; 5] {
+    let burns = if time_s >= IGNITION_S { 1.0 } else { 0.0 };
+    [time_s, burns, fuel, power, burns]
+}
+
+/// Stop of an engine with a content: nothing burns, the pump goes on.
+fn from_content([time_s, _, fuel, power, flow]: [f64; 5]) -> [f64; 5] {
+    [time_s, 0.0, fuel, power, flow]
+}
 
 /// Engines of the laboratory houses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -130,6 +145,19 @@ pub struct ChpParams {
     pub warm_up_s: f64,
     /// Electricity while the unit is off, W.
     pub idle_w: f64,
+    /// Heat capacity of the engine with its water, J/K: 60 kJ/K; 0 (default) for the measured start without a content.
+    pub content_j_k: f64,
+    /// Heat of that content to its surroundings, W/K.
+    pub content_loss_w_k: f64,
+    /// Temperature around the engine, K.
+    pub ambient_k: f64,
+    /// The pump starts where the content is hotter, K.
+    pub pump_on_k: f64,
+    /// The pump stops where the content is colder, K.
+    pub pump_off_k: f64,
+    /// Temperature of the content at the start of the run, K; that of the run without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_content_k: Option<f64>,
     /// false: the steady map at once, without start, warm-up, stop, load changes and least times.
     pub dynamics: bool,
 }
@@ -162,6 +190,12 @@ impl Default for ChpParams {
             warm_up_w: 1000.0,
             warm_up_s: 2400.0,
             idle_w: 35.0,
+            content_j_k: 0.0,
+            content_loss_w_k: 5.0,
+            ambient_k: 291.15,
+            pump_on_k: 355.15,
+            pump_off_k: 348.15,
+            initial_content_k: None,
             dynamics: true,
         }
     }
@@ -209,21 +243,30 @@ impl ChpParams {
             ("off_min_s", self.off_min_s),
             ("warm_up_w", self.warm_up_w),
             ("idle_w", self.idle_w),
+            ("content_j_k", self.content_j_k),
+            ("content_loss_w_k", self.content_loss_w_k),
         ] {
             not_negative(field, value)?;
         }
         let liquid = |field, t_k| liquid(medium, field, t_k);
         let size = power_w / MEASURED_W;
         let longer = self.start_s / START_S;
-        let start = START.map(|[time_s, heat, fuel, power, flow]| {
+        let engine = self.engine(medium)?;
+        let start = START.map(|point| {
+            let point = if engine.is_some() { into_content(point) } else { point };
+            let [time_s, factors @ ..] = point;
+            let [heat, fuel, power, flow] = factors;
             TablePoint::new([time_s * longer, heat, fuel, power, flow])
+        });
+        let stop = STOP.map(|point| {
+            TablePoint::new(if engine.is_some() { from_content(point) } else { point })
         });
         let burner = Burner {
             modulation_min,
             slew_per_s: if self.load_change_s > 0.0 { 1.0 / self.load_change_s } else { f64::MAX },
             starts_full: true,
             start: start.into(),
-            stop: STOP.map(TablePoint::new).into(),
+            stop: stop.into(),
             warm_within_s: self.cold_after_s,
             warm_scale: self.warm_start_s / self.start_s,
             warm_up: WarmUp {
@@ -257,6 +300,7 @@ impl ChpParams {
                 supply_max_k: liquid("supply_max_k", self.supply_max_k)?,
                 restart_k: self.restart_difference_k,
             },
+            engine,
             idle_w: self.idle_w,
             running_w: 0.0,
             size,
@@ -269,5 +313,27 @@ impl ChpParams {
             ],
             medium: *medium,
         })
+    }
+
+    /// The content, where there is one.
+    fn engine(&self, medium: &Medium) -> Result<Option<EngineContent>, UnitError> {
+        let liquid = |field, t_k| liquid(medium, field, t_k);
+        let content = EngineContent {
+            heat_capacity_j_k: self.content_j_k,
+            loss_w_k: self.content_loss_w_k,
+            ambient_k: positive("ambient_k", self.ambient_k)?,
+            pump_on_k: liquid("pump_on_k", self.pump_on_k)?,
+            pump_off_k: liquid("pump_off_k", self.pump_off_k)?,
+            initial_k: self
+                .initial_content_k
+                .map(|t_k| liquid("initial_content_k", t_k))
+                .transpose()?,
+        };
+        if content.pump_off_k > content.pump_on_k {
+            let requirement = "must not be above pump_on_k";
+            let (field, value) = ("pump_off_k", self.pump_off_k);
+            return Err(UnitError::OutOfRange { field, value, requirement });
+        }
+        Ok((self.content_j_k > 0.0).then_some(content))
     }
 }

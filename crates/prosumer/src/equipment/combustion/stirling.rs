@@ -1,6 +1,7 @@
 //! A Stirling engine with an auxiliary boiler and an electric rod as written in a model file.
 
-use super::boiler::{flow_rule, measured_stage};
+use super::boiler::measured_stage;
+use super::flow::flow_rule;
 use super::map::SteadyMap;
 use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
@@ -176,6 +177,7 @@ impl StirlingChpParams {
                 supply_max_k: liquid("supply_max_k", self.supply_max_k)?,
                 restart_k: self.restart_difference_k,
             },
+            engine: None,
             idle_w: self.idle_w,
             running_w: 0.0,
             size: self.electric_max_w / 1000.0,

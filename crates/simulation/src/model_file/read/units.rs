@@ -4,7 +4,7 @@ use super::components::Words;
 use super::{ModelReader, Stations, place};
 use crate::diagnostic::Diagnostic;
 use crate::document::Tree;
-use crate::model::{CircuitSpec, UnitSpec};
+use crate::model::{BranchSpec, CircuitSpec, UnitSpec};
 use crate::model_file::CircuitEntry;
 use anergy_prosumer::equipment::{EquipmentParams, WITHOUT_PORTS};
 use smol_str::{SmolStr, format_smolstr};
@@ -29,6 +29,12 @@ impl ModelReader<'_> {
                 self.reader.report(problem.with_hint("give it a name"));
                 return None;
             }
+            if let Some(field) = entry.misplaced() {
+                let message = format!("{what}: `{field}` is of a branch between two points");
+                let hint = "give both from and to, such as from = \"return\" and to = \"supply\"";
+                let problem = Diagnostic::new(message, place.of(field));
+                self.reader.report(problem.with_hint(hint));
+            }
             let whole = |name: &str| match &entry.site {
                 Some(site) => format_smolstr!("{site}.{name}"),
                 None => name.into(),
@@ -37,6 +43,17 @@ impl ModelReader<'_> {
                 id: whole(&entry.id),
                 through: entry.through.iter().map(|name| whole(name)).collect(),
                 v_flow_m3_s: entry.v_flow_m3_s,
+                branch: entry.from.as_deref().zip(entry.to.as_deref()).map(|(from, to)| {
+                    BranchSpec {
+                        from: whole(from),
+                        to: whole(to),
+                        resistance: entry.resistance,
+                        idle_opening: entry.idle_opening.unwrap_or(0.0),
+                        suction: entry.suction.unwrap_or(0.0),
+                        throttled: entry.throttled.unwrap_or(true),
+                        check_valve: entry.check_valve.unwrap_or(false),
+                    }
+                }),
                 place,
             })
         });
