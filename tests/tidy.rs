@@ -21,12 +21,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("ems", &["core", "prosumer", "control"]),
     ("simulation", &["core", "network", "prosumer", "control", "ems"]),
     ("discrepancy", &["core", "network", "simulation", "recording"]),
+    ("ensemble", &["core", "simulation", "recording"]),
     ("cli", &EVERYTHING),
     ("py", &EVERYTHING),
 ];
 
 /// For what stands on top.
-const EVERYTHING: [&str; 10] = [
+const EVERYTHING: [&str; 11] = [
     "import",
     "core",
     "network",
@@ -37,6 +38,7 @@ const EVERYTHING: [&str; 10] = [
     "ems",
     "simulation",
     "discrepancy",
+    "ensemble",
 ];
 
 /// Foreign crates that one crate of ours wraps.

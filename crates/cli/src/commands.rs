@@ -11,3 +11,4 @@ pub mod run;
 pub mod schema;
 pub mod solve;
 pub mod stability;
+pub mod sweep;

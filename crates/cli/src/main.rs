@@ -67,6 +67,13 @@ enum Command {
         #[arg(long)]
         advise: bool,
     },
+    /// Run many variants of a model on all cores: sweeps and samples; goes on where it was stopped
+    Sweep {
+        /// Model file
+        model: PathBuf,
+        #[command(flatten)]
+        wanted: commands::sweep::SweepArguments,
+    },
     /// Where a model and measurements disagree, which effect is missing, and what adding it brings
     Explain {
         /// Model file
@@ -96,6 +103,9 @@ enum Command {
         /// A page in Markdown about every field instead
         #[arg(long)]
         markdown: bool,
+        /// That of the variations of `anergy sweep` instead
+        #[arg(long, conflicts_with = "markdown")]
+        variations: bool,
     },
     /// Read the network of another program into a model file, or measured series
     Import {
@@ -190,7 +200,8 @@ fn main() -> ExitCode {
             let detail = commands::check::Detail { expand, explain_defaults, signals, weather };
             commands::check::check(&model, detail)
         }
-        Command::Schema { markdown } => commands::schema::schema(markdown),
+        Command::Sweep { model, wanted } => commands::sweep::sweep(&model, &wanted),
+        Command::Schema { markdown, variations } => commands::schema::schema(markdown, variations),
         Command::Import { format } => match format {
             ImportFormat::Epanet { file, out, steady, self_acting } => {
                 commands::import::epanet(&file, &out, EpanetOptions { steady, self_acting })

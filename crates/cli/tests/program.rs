@@ -326,3 +326,59 @@ fn measured_series_drive_a_model() {
         text(&wrong.stderr)
     );
 }
+
+const VARIATIONS: &str = "format = 1\n[run]\nuntil = \"2min\"\n[keep]\nkpis = [\"network.*\"]\n\
+    [[variation]]\nparameter = \"sf1.feed_in_pump.speed\"\nvalues = [0.9, 0.95, 1.0]\n\
+    [[variation]]\nname = \"ground\"\nparameter = \"ground.temperature_degc\"\nlow = 5\nhigh = 15\ncount = 2\n";
+
+#[test]
+fn a_sweep_leaves_a_table_goes_on_and_runs_one_member_in_full() {
+    let dir = with_model(MODEL);
+    std::fs::write(dir.path().join("variations.toml"), VARIATIONS).unwrap();
+    let sweep = ["sweep", "model.toml", "variations.toml", "--out", "swept"];
+    let output = anergy(&sweep, dir.path());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("6 of 6 members finished, 0 of them failed"));
+    let table = std::fs::read_to_string(dir.path().join("swept/members.csv")).unwrap();
+    assert!(table.starts_with("member,sf1.feed_in_pump.speed,ground,error,network."), "{table}");
+    assert_eq!(table.lines().count(), 7);
+    // Killed after two lines: the other members run, and the table is the same.
+    let journal = dir.path().join("swept/journal.jsonl");
+    let lines = std::fs::read_to_string(&journal).unwrap();
+    let two: String = lines.split_inclusive('\n').take(2).collect();
+    std::fs::write(&journal, two).unwrap();
+    let output = anergy(&sweep, dir.path());
+    assert!(text(&output.stdout).contains("2 of 6 members are there; going on"));
+    assert_eq!(table, std::fs::read_to_string(dir.path().join("swept/members.csv")).unwrap());
+    let output = anergy(&[&sweep[..], &["--member", "3"]].concat(), dir.path());
+    assert!(text(&output.stdout).contains("sf1.feed_in_pump.speed = 0.95\nground = 15"));
+    let summary = std::fs::read(dir.path().join("swept/member-3/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
+    let lost = summary["kpis"]["network"]["heat_lost_kwh"].as_f64().unwrap();
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let column = rows.next().unwrap().iter().position(|n| *n == "network.heat_lost_kwh").unwrap();
+    let told: f64 = rows.nth(3).unwrap()[column].parse().unwrap();
+    assert_eq!(told.to_bits(), lost.to_bits());
+}
+
+#[test]
+fn sweeps_that_cannot_be_are_refused() {
+    let dir = with_model(MODEL);
+    let wrong = VARIATIONS.replace("sf1.feed_in_pump.speed", "sf1.feed_in_pump.sped");
+    std::fs::write(dir.path().join("wrong.toml"), wrong).unwrap();
+    std::fs::write(dir.path().join("variations.toml"), VARIATIONS).unwrap();
+    let sweep = |more: &[&str]| anergy(&[&["sweep", "model.toml"], more].concat(), dir.path());
+    let output = sweep(&["wrong.toml", "--out", "swept"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = text(&output.stderr);
+    assert!(
+        told.contains("wrong.toml:7:13") && told.contains("sf1.feed_in_pump.speed`?"),
+        "{told}"
+    );
+    assert_eq!(sweep(&["variations.toml"]).status.code(), Some(2));
+    let output = sweep(&["variations.toml", "--out", "swept", "--member", "6"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("members are 0 to 5"));
+    let schema = anergy(&["schema", "--variations"], dir.path());
+    assert!(text(&schema.stdout).contains("standard_deviation"));
+}

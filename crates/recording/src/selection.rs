@@ -104,10 +104,11 @@ fn matches(pattern: &str, channel: &Channel) -> bool {
     below(&channel.name) || below(&channel.component)
 }
 
-/// Whether a text has the form of a pattern: greedy, with one place to go back to.
-fn glob(pattern: &str, text: &str) -> bool {
+/// Whether a text has the form of a pattern, in which `*` is any text and `?` any character.
+pub fn glob(pattern: &str, text: &str) -> bool {
     let (pattern, text): (Vec<char>, Vec<char>) =
         (pattern.chars().collect(), text.chars().collect());
+    // Greedy, with one place to go back to.
     let (mut p, mut t) = (0, 0);
     let mut star: Option<(usize, usize)> = None;
     while t < text.len() {

@@ -2,11 +2,11 @@
 //!
 //! An overlay names a component and what to change; its neutral value leaves the model identical.
 
-use crate::model::{BranchSpec, DriverSpec, EdgeSpec, Model, Place};
-use crate::model_file::GroundEntry;
+mod parameters;
+
+use crate::model::{DriverSpec, EdgeSpec, Model, Place};
 use anergy_network::elements::ElementParams;
-use anergy_prosumer::equipment::EquipmentParams;
-use serde_json::{Value, json};
+use serde_json::Value;
 use smol_str::{SmolStr, format_smolstr};
 use thiserror::Error;
 
@@ -203,78 +203,5 @@ impl Model {
             place: Place::default(),
         });
         Ok(())
-    }
-
-    /// Changes a field of an edge, a unit, a circuit between points, the ground or the initial temperature.
-    fn change_parameter(
-        &mut self,
-        parameter: &str,
-        new: impl Fn(&Value) -> Option<Value>,
-    ) -> Result<(), OverlayError> {
-        let unknown = || OverlayError::UnknownParameter { parameter: parameter.to_owned() };
-        let (component, field) = parameter.rsplit_once('.').ok_or_else(unknown)?;
-        if let Some(edge) = self.edges.iter_mut().find(|edge| edge.id == component) {
-            let schema = ElementParams::schema(edge.params.kind());
-            let value = changed(parameter, field, edge.params.to_value(), schema.as_ref(), new)?;
-            edge.params =
-                deserialized(parameter, ElementParams::deserialize(edge.params.kind(), value))?;
-            return Ok(());
-        }
-        if let Some(unit) = self.units.iter_mut().find(|unit| unit.id == component) {
-            let schema = EquipmentParams::schema(unit.params.kind());
-            let value = changed(parameter, field, unit.params.to_value(), schema.as_ref(), new)?;
-            unit.params =
-                deserialized(parameter, EquipmentParams::deserialize(unit.params.kind(), value))?;
-            return Ok(());
-        }
-        if let Some(circuit) = self.circuits.iter_mut().find(|circuit| circuit.id == component) {
-            let schema = schemars::schema_for!(BranchSpec);
-            let branch = circuit.branch.as_mut().ok_or_else(unknown)?;
-            let value = changed(parameter, field, json!(branch), Some(&schema), new)?;
-            *branch = deserialized(parameter, Some(serde_json::from_value(value)))?;
-            return Ok(());
-        }
-        if component == "ground" && self.ground.has(field) {
-            let schema = schemars::schema_for!(GroundEntry);
-            let ground = json!(self.ground);
-            let value = changed(parameter, field, ground, Some(&schema), new)?;
-            self.ground = deserialized(parameter, Some(serde_json::from_value(value)))?;
-            return Ok(());
-        }
-        Err(unknown())
-    }
-}
-
-/// The object with one field changed.
-fn changed(
-    parameter: &str,
-    field: &str,
-    mut object: Value,
-    schema: Option<&schemars::Schema>,
-    new: impl Fn(&Value) -> Option<Value>,
-) -> Result<Value, OverlayError> {
-    let known = schema.map(crate::grammar::property_names).unwrap_or_default();
-    if !known.iter().any(|name| name == field) {
-        return Err(OverlayError::UnknownParameter { parameter: parameter.to_owned() });
-    }
-    let old = object.get(field).cloned().unwrap_or(Value::Null);
-    let value = new(&old).ok_or_else(|| OverlayError::Value {
-        parameter: parameter.to_owned(),
-        reason: format!("{old} is not a number that can be scaled"),
-    })?;
-    object[field] = value;
-    Ok(object)
-}
-
-fn deserialized<T>(
-    parameter: &str,
-    result: Option<Result<T, serde_json::Error>>,
-) -> Result<T, OverlayError> {
-    match result {
-        Some(Ok(params)) => Ok(params),
-        Some(Err(error)) => {
-            Err(OverlayError::Value { parameter: parameter.to_owned(), reason: error.to_string() })
-        }
-        None => Err(OverlayError::UnknownParameter { parameter: parameter.to_owned() }),
     }
 }

@@ -4,7 +4,7 @@ use super::Model;
 use crate::errors;
 use anergy_simulation::overlay::Change;
 use pyo3::prelude::*;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 impl Model {
     /// A new model with one more change.
@@ -20,17 +20,6 @@ impl Model {
 
     /// Every parameter that can be set, with its value.
     pub(super) fn known_parameters(&self) -> Vec<(String, Value)> {
-        let edges = self.model.edges.iter().map(|edge| (&edge.id, edge.params.to_value()));
-        let units = self.model.units.iter().map(|unit| (&unit.id, unit.params.to_value()));
-        let mut known =
-            vec![("ground.temperature_k".to_owned(), json!(self.model.ground.temperature_k))];
-        for (id, values) in edges.chain(units) {
-            if let Value::Object(values) = values {
-                known.extend(
-                    values.into_iter().map(|(name, value)| (format!("{id}.{name}"), value)),
-                );
-            }
-        }
-        known
+        self.model.parameters()
     }
 }

@@ -1,0 +1,470 @@
+//! The file of variations: what is varied, how the members are chosen, how they run, what is kept of them.
+
+use crate::spread::{Spread, Wrong};
+use anergy_recording::selection::glob;
+use anergy_simulation::diagnostic::{Diagnostic, Diagnostics};
+use anergy_simulation::document::{self, Span, Tree, TreeKind};
+use anergy_simulation::fields::{Reader, SiTable};
+use anergy_simulation::model_file::{Duration, StepEntry};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+/// How members are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Design {
+    /// Every value of every variation with every other one; the last variation changes fastest.
+    #[default]
+    Grid,
+    /// The first values of all variations, then the second ones, ...
+    List,
+    /// Independent draws.
+    MonteCarlo,
+    /// Draws that meet every one of as many equally probable intervals as there are members once.
+    LatinHypercube,
+    /// Given points of the unit cube, such as those of a sensitivity analysis.
+    Points,
+}
+
+/// Which random numbers members draw, where the model has some (weather, hot water, noise of sensors, ...).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Random {
+    /// All draw those of the model.
+    Same,
+    /// Each draws its own, told by the seed of the ensemble and the number of the member.
+    Own,
+}
+
+/// `[ensemble]`: how members are chosen.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EnsembleEntry {
+    /// How members are chosen.
+    #[serde(default)]
+    pub design: Design,
+    /// How many, in samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub members: Option<usize>,
+    /// Start of the random numbers of samples.
+    #[serde(default)]
+    pub seed: u32,
+    /// Which random numbers members draw; absent: their own in samples, the same in grids, lists and points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub random: Option<Random>,
+    /// Points of the unit cube: a row per member, a number between 0 and 1 per variation; points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<Vec<f64>>,
+}
+
+/// `[run]`: what replaces the `[run]` of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RunEntry {
+    /// End of each run, for example "1d".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<Duration>,
+    /// Largest time step, for example "1s", or "auto".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<StepEntry>,
+    /// Time between recorded rows, for example "1h".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<Duration>,
+}
+
+/// `[keep]`: what is kept of each run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KeepEntry {
+    /// Indicators by name; `*` is any text. Absent: all.
+    #[serde(default = "everything")]
+    pub kpis: Vec<String>,
+    /// Channels by name, component or with `*`: their recorded rows. Absent: none.
+    #[serde(default)]
+    pub channels: Vec<String>,
+}
+
+fn everything() -> Vec<String> {
+    vec!["*".to_owned()]
+}
+
+impl Default for KeepEntry {
+    fn default() -> Self {
+        Self { kpis: everything(), channels: Vec::new() }
+    }
+}
+
+/// What is done with a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum How {
+    /// The parameter gets it.
+    #[default]
+    Set,
+    /// The parameter is multiplied by it.
+    Scale,
+}
+
+/// A `[[variation]]`: a parameter, or several that change together, and its values.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VariationEntry {
+    /// What its column is called; absent: the parameter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// `component.field` of the model, in any unit of the field; `*` is any text.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parameter: Option<String>,
+    /// Several of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<String>,
+    /// Whether values are set, or multiply those of the model.
+    #[serde(default)]
+    pub how: How,
+    /// Values that are listed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub values: Option<Vec<Value>>,
+    /// Smallest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<f64>,
+    /// Largest value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<f64>,
+    /// How many values a grid has from `low` to `high`, ends included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// Most frequent value of a triangular distribution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode: Option<f64>,
+    /// Mean of a normal distribution; `low` and `high` cut it off where they are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean: Option<f64>,
+    /// Standard deviation of a normal distribution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_deviation: Option<f64>,
+}
+
+/// The whole file, for its JSON Schema.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VariationsFile {
+    /// Version of the grammar: 1.
+    pub format: u32,
+    /// How members are chosen.
+    #[serde(default)]
+    pub ensemble: EnsembleEntry,
+    /// What replaces the `[run]` of the model.
+    #[serde(default)]
+    pub run: RunEntry,
+    /// What is kept of each run.
+    #[serde(default)]
+    pub keep: KeepEntry,
+    /// What is varied.
+    #[serde(default)]
+    pub variation: Vec<VariationEntry>,
+}
+
+/// The JSON Schema of the file, for editors.
+pub fn schema() -> Value {
+    json!(schemars::schema_for!(VariationsFile))
+}
+
+/// A variation that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variation {
+    /// What its column is called.
+    pub name: String,
+    /// What is varied, as written.
+    pub parameters: Vec<String>,
+    /// Whether values are set, or multiply.
+    pub how: How,
+    /// Its values.
+    pub spread: Spread,
+    /// Where it stands.
+    pub(crate) places: Places,
+}
+
+/// Where an entry and its fields stand.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Places {
+    whole: Span,
+    fields: Vec<(&'static str, Span)>,
+}
+
+impl Places {
+    fn of(tree: &Tree, table: &SiTable) -> Self {
+        let fields = table.fields.iter().map(|field| (field.si(), field.span)).collect();
+        Self { whole: tree.span, fields }
+    }
+
+    /// The place of the first of these fields that was written.
+    pub(crate) fn of_field(&self, names: &[&str]) -> Option<std::ops::Range<usize>> {
+        let written = self.fields.iter().find(|(field, _)| names.contains(field));
+        written.map_or(self.whole, |(_, span)| *span).range()
+    }
+}
+
+/// A file of variations that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Definition {
+    /// The text, for messages.
+    pub text: String,
+    /// How members are chosen.
+    pub ensemble: EnsembleEntry,
+    /// What replaces the `[run]` of the model.
+    pub run: RunEntry,
+    /// What is kept of each run.
+    pub keep: KeepEntry,
+    /// What is varied.
+    pub variations: Vec<Variation>,
+    pub(crate) keep_places: Places,
+    /// The whole as one object, by which the ensemble of a folder is recognised.
+    pub document: Value,
+}
+
+const SECTIONS: [&str; 5] = ["format", "ensemble", "run", "keep", "variation"];
+
+impl Definition {
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// All problems with places and hints.
+    pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
+        let tree = document::parse_toml(text)?;
+        let mut reader = Reader::default();
+        check_sections(&tree, &mut reader);
+        let (ensemble, ensemble_places) = section::<EnsembleEntry>(&tree, "ensemble", &mut reader);
+        let (run, _) = section::<RunEntry>(&tree, "run", &mut reader);
+        let (keep, keep_places) = section::<KeepEntry>(&tree, "keep", &mut reader);
+        let variations = variations(&tree, &mut reader);
+        let definition = Self {
+            text: text.to_owned(),
+            ensemble,
+            run,
+            keep,
+            variations,
+            keep_places,
+            document: tree.to_json(),
+        };
+        if reader.problems.is_empty() {
+            definition.check_design(&ensemble_places, &mut reader);
+        }
+        if reader.problems.is_empty() { Ok(definition) } else { Err(Diagnostics(reader.problems)) }
+    }
+
+    /// Reads an object with the grammar of the file; the version may be left out.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_json(object: &Map<String, Value>) -> Result<Self, Diagnostics> {
+        let mut file = Map::new();
+        file.insert("format".into(), json!(1));
+        file.extend(object.iter().map(|(name, value)| (name.clone(), value.clone())));
+        // Through the text, so that places are those of the file that the user could save.
+        Self::from_toml(&document::to_toml(&file)?)
+    }
+
+    /// Which random numbers members draw.
+    pub fn random(&self) -> Random {
+        self.ensemble.random.unwrap_or(match self.ensemble.design {
+            Design::MonteCarlo | Design::LatinHypercube => Random::Own,
+            Design::Grid | Design::List | Design::Points => Random::Same,
+        })
+    }
+
+    /// Patterns of `[keep]` that none of these indicators has the form of.
+    pub fn unmatched(&self, indicators: &[String]) -> Vec<String> {
+        let met = |pattern: &str| indicators.iter().any(|name| glob(pattern, name));
+        self.keep.kpis.iter().filter(|pattern| !met(pattern)).cloned().collect()
+    }
+
+    /// Whether design and variations fit each other.
+    fn check_design(&self, places: &Places, reader: &mut Reader) {
+        let entry = &self.ensemble;
+        let sampled = matches!(entry.design, Design::MonteCarlo | Design::LatinHypercube);
+        let mut report = |fields: &[&str], message: String, hint: &str| {
+            reader.report(Diagnostic::new(message, places.of_field(fields)).with_hint(hint));
+        };
+        match (sampled, entry.members) {
+            (true, None) => report(
+                &["design"],
+                "ensemble: members is missing".into(),
+                "how many samples are drawn",
+            ),
+            (true, Some(0)) => {
+                report(&["members"], "ensemble: members = 0 is no ensemble".into(), "at least 1")
+            }
+            (false, Some(_)) => {
+                let hint = "it is for monte_carlo and latin_hypercube; others have as many as their values make";
+                report(&["members"], "ensemble: members belongs to samples".into(), hint);
+            }
+            _ => {}
+        }
+        if entry.points.is_empty() == (entry.design == Design::Points) {
+            let message = "ensemble: points and design = \"points\" belong together".into();
+            report(&["points", "design"], message, "a row per member, a number per variation");
+        }
+        for (i, row) in entry.points.iter().enumerate() {
+            let count = self.variations.len();
+            if row.len() != count {
+                let message = format!(
+                    "ensemble: points[{i}] has {} numbers for {count} variations",
+                    row.len()
+                );
+                report(&["points"], message, "a number per variation");
+            } else if let Some(u) = row.iter().find(|u| !(0.0..=1.0).contains(*u)) {
+                let message =
+                    format!("ensemble: points[{i}] has {u}, which is not between 0 and 1");
+                report(
+                    &["points"],
+                    message,
+                    "a point of the unit cube: it becomes a value by the distribution",
+                );
+            }
+        }
+        self.check_counts(reader);
+    }
+
+    /// Grids and lists need values that can be counted.
+    fn check_counts(&self, reader: &mut Reader) {
+        let design = self.ensemble.design;
+        if !matches!(design, Design::Grid | Design::List) {
+            return;
+        }
+        let mut first: Option<(usize, &str)> = None;
+        for variation in &self.variations {
+            let name = &variation.name;
+            let Some(count) = variation.spread.count() else {
+                let place = variation.places.of_field(&["low", "mean"]);
+                let message =
+                    format!("variation \"{name}\": a distribution has no values to go through");
+                let hint = "add count to low and high, list values, or choose design = \"latin_hypercube\"";
+                reader.report(Diagnostic::new(message, place).with_hint(hint));
+                continue;
+            };
+            let (expected, other) = *first.get_or_insert((count, name));
+            if design == Design::List && count != expected {
+                let place = variation.places.of_field(&["values", "count"]);
+                let message =
+                    format!("variation \"{name}\" has {count} values, \"{other}\" has {expected}");
+                let hint = "in a list all have as many as there are members";
+                reader.report(Diagnostic::new(message, place).with_hint(hint));
+            }
+        }
+    }
+}
+
+fn check_sections(tree: &Tree, reader: &mut Reader) {
+    for (key, _) in tree.entries() {
+        if SECTIONS.contains(&key.name.as_str()) {
+            continue;
+        }
+        let near = SECTIONS
+            .iter()
+            .map(|known| (strsim::damerau_levenshtein(&key.name, known), known))
+            .filter(|(distance, _)| *distance <= 3)
+            .min();
+        let hint = match near {
+            Some((_, known)) => format!("did you mean `{known}`?"),
+            None => format!("known are {}", SECTIONS.join(", ")),
+        };
+        let message = format!("unknown section `{}`", key.name);
+        reader.report(Diagnostic::new(message, key.span.range()).with_hint(hint));
+    }
+    match tree.get("format").map(|format| (format.to_json(), format.span)) {
+        None => {
+            let problem = Diagnostic::new("format is missing", Some(0..0));
+            reader.report(problem.with_hint("write format = 1 on top of the file"));
+        }
+        Some((format, span)) if format != json!(1) => {
+            let problem = Diagnostic::new(format!("format = {format} is unknown"), span.range());
+            reader.report(problem.with_hint("this version reads format = 1"));
+        }
+        Some(_) => {}
+    }
+}
+
+fn section<T>(tree: &Tree, name: &'static str, reader: &mut Reader) -> (T, Places)
+where
+    T: serde::de::DeserializeOwned + JsonSchema + Default + 'static,
+{
+    let read = tree.get(name).and_then(|section| {
+        let (entry, table) = reader.read::<T>(name, section)?;
+        Some((entry, Places::of(section, &table)))
+    });
+    read.unwrap_or_default()
+}
+
+fn variations(tree: &Tree, reader: &mut Reader) -> Vec<Variation> {
+    let entries: &[Tree] = match tree.get("variation") {
+        Some(Tree { kind: TreeKind::Array(entries), .. }) => entries,
+        Some(other) => {
+            let problem = Diagnostic::new("variation must be a list", other.span.range());
+            reader.report(problem.with_hint("write [[variation]] in double brackets"));
+            return Vec::new();
+        }
+        None => &[],
+    };
+    if entries.is_empty() {
+        let problem = Diagnostic::new("there is no [[variation]]", Some(0..0));
+        reader
+            .report(problem.with_hint("add one: parameter = \"component.field\", values = [...]"));
+    }
+    let mut read: Vec<Variation> = Vec::new();
+    for (i, tree) in entries.iter().enumerate() {
+        let what = tree.text("name").or(tree.text("parameter"));
+        let what = what
+            .map_or_else(|| format!("variation {}", i + 1), |name| format!("variation \"{name}\""));
+        let Some((entry, table)) = reader.read::<VariationEntry>(&what, tree) else { continue };
+        let places = Places::of(tree, &table);
+        match variation(entry, places.clone(), &read) {
+            Ok(variation) => read.push(variation),
+            Err(Wrong { field, message, hint }) => {
+                let problem =
+                    Diagnostic::new(format!("{what}: {message}"), places.of_field(&[field]));
+                reader.report(problem.with_hint(hint));
+            }
+        }
+    }
+    read
+}
+
+fn variation(
+    entry: VariationEntry,
+    places: Places,
+    others: &[Variation],
+) -> Result<Variation, Wrong> {
+    let wrong = |field: &'static str, message: &str, hint: &'static str| {
+        Err(Wrong { field, message: message.to_owned(), hint })
+    };
+    let spread = Spread::of(&entry)?;
+    let parameters = match (entry.parameter, entry.parameters) {
+        (Some(one), several) if several.is_empty() => vec![one],
+        (None, several) if !several.is_empty() => several,
+        (Some(_), _) => {
+            return wrong("parameters", "parameter and parameters are both there", "give only one");
+        }
+        (None, _) => {
+            return wrong("", "parameter is missing", "write parameter = \"component.field\"");
+        }
+    };
+    let numbers = |values: &[Value]| values.iter().all(Value::is_number);
+    if let (How::Scale, Spread::Values(values)) = (entry.how, &spread)
+        && !numbers(values)
+    {
+        return wrong("values", "a factor is not a number", "how = \"scale\" multiplies");
+    }
+    let name = entry.name.unwrap_or_else(|| parameters[0].clone());
+    if others.iter().any(|other| other.name == name) {
+        return wrong(
+            "name",
+            "there is another variation of that name",
+            "give it a name of its own",
+        );
+    }
+    if name == "member" || name == "error" || name.is_empty() {
+        return wrong("name", "the name is one of a column of the results", "choose another one");
+    }
+    Ok(Variation { name, parameters, how: entry.how, spread, places })
+}
