@@ -27,7 +27,8 @@ test-doc: ## Rust documentation builds without warnings, its examples run
 $(VENV)/.installed:
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check "maturin>=1.9.4,<2" numpy \
-		"pytest>=8" "mypy>=1.16" pandas pandas-stubs polars pyarrow xarray matplotlib mcap
+		"pytest>=8" "mypy>=1.16" pandas pandas-stubs polars pyarrow xarray matplotlib mcap \
+		"dask[distributed]" gymnasium SALib
 	touch $@
 
 python: $(VENV)/.installed ## Build the Python package into a private environment

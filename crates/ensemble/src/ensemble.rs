@@ -14,7 +14,7 @@ use anergy_simulation::diagnostic::{Diagnostic, Diagnostics};
 use anergy_simulation::model::Model;
 use anergy_simulation::overlay::Change;
 use anergy_simulation::run::RunOptions;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -171,6 +171,11 @@ impl Ensemble {
     /// How a member is run.
     pub fn options(&self) -> RunOptions {
         self.options
+    }
+
+    /// The indicators that are kept, of the `kpis` of a summary: `component.quantity_unit` and number.
+    pub fn indicators(&self, told: &Value) -> Map<String, Value> {
+        member::indicators(told, &self.wanted.kpis)
     }
 
     /// Runs a member; `None` when `keep_going`, which is asked after every recorded row, said no.

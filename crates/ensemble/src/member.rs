@@ -91,7 +91,7 @@ fn kept(
 }
 
 /// Indicators of the grid, then of sites, stations and units: `component.quantity_unit` and number.
-fn indicators(told: &Value, patterns: &[String]) -> Map<String, Value> {
+pub(crate) fn indicators(told: &Value, patterns: &[String]) -> Map<String, Value> {
     let mut found = Map::new();
     let mut add = |component: &str, numbers: &Value| {
         for (name, value) in numbers.as_object().into_iter().flatten() {

@@ -156,6 +156,14 @@ impl Spread {
         }
     }
 
+    /// Whether all values are numbers.
+    pub fn is_numeric(&self) -> bool {
+        match self {
+            Self::Values(values) => values.iter().all(Value::is_number),
+            _ => true,
+        }
+    }
+
     /// One of the values of a grid.
     pub fn nth(&self, n: usize) -> Value {
         match self {

@@ -38,7 +38,7 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
         /// What differs.
-        what: String,
+        what: &'static str,
     },
 }
 
@@ -81,7 +81,12 @@ impl Store {
         let identity = ensemble.identity();
         let path = folder.join("ensemble.json");
         match std::fs::read_to_string(&path) {
-            Ok(text) => same(folder, &identity, &text)?,
+            Ok(text) => {
+                if let Some(what) = difference(&identity, &text) {
+                    let folder = folder.to_owned();
+                    return Err(StoreError::Other { folder, what });
+                }
+            }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 replace(&path, format!("{identity:#}\n").as_bytes()).map_err(file_error(&path))?;
             }
@@ -249,20 +254,17 @@ impl Store {
     }
 }
 
-/// Whether results of an ensemble are those of this one.
-///
-/// # Errors
-/// [`StoreError::Other`] says what differs.
-pub fn same(folder: &Path, identity: &Value, text: &str) -> Result<(), StoreError> {
+/// What differs between the identity of an ensemble and the text of `ensemble.json`; `None` where nothing does.
+pub fn difference(identity: &Value, text: &str) -> Option<&'static str> {
     let there: Value = serde_json::from_str(text).unwrap_or_default();
-    let differs = |key: &&str| there[*key] != identity[*key];
-    match ["program", "model_sha256", "variations", "members"].into_iter().find(differs) {
-        None => Ok(()),
-        Some(key) => {
-            let what = if key == "model_sha256" { "model" } else { key };
-            Err(StoreError::Other { folder: folder.to_owned(), what: what.to_owned() })
-        }
-    }
+    let parts = [
+        ("program", "version"),
+        ("model_sha256", "model"),
+        ("variations", "variations"),
+        ("members", "members"),
+    ];
+    let differs = |(key, _): &(&str, &str)| there[*key] != identity[*key];
+    parts.into_iter().find(differs).map(|(_, what)| what)
 }
 
 /// Writes a file as a whole: it is the old one or the new one whenever the program is killed.

@@ -228,7 +228,7 @@ fn a_folder_belongs_to_one_ensemble() {
     assert!(Store::open(folder.path(), &ensemble(VARIATIONS)).is_ok());
     let other = ensemble(&VARIATIONS.replace("seed = 5", "seed = 6"));
     let error = Store::open(folder.path(), &other).unwrap_err();
-    assert!(matches!(&error, StoreError::Other { what, .. } if what == "variations"), "{error}");
+    assert!(matches!(&error, StoreError::Other { what, .. } if *what == "variations"), "{error}");
     let warmer = MODEL.replace("temperature_degc = 12", "temperature_degc = 13");
     let definition = Definition::from_toml(VARIATIONS).unwrap();
     let other = Ensemble::new(model(&warmer), definition).unwrap();

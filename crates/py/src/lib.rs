@@ -6,6 +6,7 @@
 mod arrow;
 mod controller;
 mod convert;
+mod ensemble;
 mod errors;
 mod handle;
 mod map;
@@ -23,6 +24,8 @@ mod _core {
     use crate::convert;
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::ensemble::{PyMembers, Variations};
     #[pymodule_export]
     use crate::errors::unknown_name;
     #[pymodule_export]

@@ -23,10 +23,12 @@ from anergy._core import (
     Result,
     Simulation,
     Snapshot,
+    Variations,
     __version__,
     schema,
 )
 from anergy.controller import Controller
+from anergy.ensembles import Ensemble, ensemble
 from anergy.errors import (
     AnergyError,
     ConvergenceError,
@@ -50,6 +52,7 @@ __all__ = [
     "BlockingMap",
     "Controller",
     "ConvergenceError",
+    "Ensemble",
     "Explanation",
     "Grid",
     "Handle",
@@ -69,7 +72,9 @@ __all__ = [
     "Steady",
     "Table",
     "UnknownNameError",
+    "Variations",
     "__version__",
+    "ensemble",
     "examples",
     "explain",
     "schema",

@@ -7,10 +7,11 @@ impossible arguments raise `ValueError` and `TypeError`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 if TYPE_CHECKING:
     from anergy._core import Result
+    from anergy.ensembles import Ensemble
 
 
 class Problem(TypedDict):
@@ -126,14 +127,14 @@ class RecordingError(AnergyError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during `Model.simulate`; `result` has what was recorded until then.
+    """Ctrl-C during `Model.simulate` or `anergy.ensemble`; `result` has what was there until then.
 
     In an interactive session it is found as `sys.last_value.result`.
     """
 
-    result: Result
+    result: Any
 
-    def __init__(self, message: str, result: Result) -> None:
+    def __init__(self, message: str, result: Result | Ensemble) -> None:
         super().__init__(message, result)
         self.result = result
 
