@@ -1,0 +1,264 @@
+"""Cases with a hidden effect, with none, with one outside of the catalogue, with two, and with broken data.
+
+    python cases.py OUT --rig R1 --seed 1 --draws 4      # folders OUT/R1-1-..., answers in OUT/answers.json
+
+A draw is one bench and one experiment; from it come several cases, each with its own tolerances, sensors and noise. Seeds below
+1 000 000 are for development, those from there on for scores that are reported.
+"""
+
+import argparse
+import copy
+import importlib
+import json
+from pathlib import Path
+
+import numpy as np
+
+import broken
+from detect import Look, shifted, slow, stratum
+from sensors import ROOT3, draw, measure, spoil
+
+RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
+# Range of the expected gain in log-likelihood that is aimed at.
+STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
+# Nats within which two effects are not told apart, and cosine of their signatures.
+TOGETHER, PARALLEL = 3.0, 0.99
+
+
+def still(m_flow, at_s):
+    """Samples around which nothing flows."""
+    least = np.minimum.reduce([np.interp(at_s + dt, np.arange(m_flow.size), m_flow) for dt in (-3, 0, 3)])
+    return least < 1e-6
+
+
+class Draw:
+    """A rig with its experiment: what each effect would show, from the truth with and without it."""
+
+    def __init__(self, module, seed, rich):
+        self.module, self.seed = module, seed
+        self.rng = np.random.default_rng(seed)
+        self.rig = module.draw(self.rng, rich)
+        self.sensors = module.sensors(self.rig)
+        self.at_s = np.arange(0, module.duration_s(self.rig), self.rig["every_s"])
+        self.neutral = module.neutral(self.rig)
+        self.plant = list(module.effects(self.rig))
+        inputs = [s for s in self.sensors if s.role == "input" and s.truth in module.INPUTS]
+        tolerances = module.tolerances(self.rig)
+        variants = [{}] + [{k: self.neutral[k] + half} for k, half in tolerances.items()]
+        variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((0.5, 1.0), (0.0, 1.02))]
+        variants += [variant(look) for _, _, _, variant, look, _, _ in self.plant]
+        channels = module.simulate(self.rig, [self.neutral | v for v in variants])
+        look = self.look = Look(self.rig, self.sensors, channels, self.at_s)
+        k = 1
+        for _ in tolerances:
+            look.tolerate(look.of(channels, k), 1 / ROOT3)
+            k += 1
+        self.effects = []  # id, component, parameter, neutral, first look, range, variant or None, signature
+        for s in inputs:
+            bias, gain, _ = s.limits(channels[s.truth][0])
+            by_bias, by_gain = -look.of(channels, k) / 0.5, -look.of(channels, k + 1) / 0.02
+            k += 2
+            look.tolerate(by_bias, bias / ROOT3)
+            look.tolerate(by_gain, gain / ROOT3)
+            if s.kind == "k":
+                self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, by_bias))
+            else:
+                self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, 0.05 * by_gain))
+        for s in look.sensors:
+            bias, gain, _ = s.limits(channels[s.truth][0])
+            one = look.of_sensor(s, lambda _, y: y + 1.0)
+            same = look.of_sensor(s, lambda _, y: 1.05 * y)
+            look.tolerate(one, bias / ROOT3)
+            look.tolerate(same, gain / ROOT3 / 0.05)
+            look.tolerate(look.of_sensor(s, shifted(1.0)), self.rig["every_s"] / ROOT3)
+            look.tolerate(look.of_sensor(s, slow(max(s.lag_s, 1.0) * 0.2)), 1 / ROOT3)
+            if s.kind == "k":
+                self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, one))
+            else:
+                self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, same))
+            self.effects.append(("S4", s.column, "lag_s", 0.0, 30.0, (2, 180), None, look.of_sensor(s, slow(30.0))))
+            self.effects.append(("S7", s.column, "clock_s", 0.0, 30.0, (-60, 60), None, look.of_sensor(s, shifted(30.0))))
+        for id_, component, parameter, variant, first, range_, zero in self.plant:
+            self.effects.append((id_, component, parameter, zero, first, range_, variant, look.of(channels, k)))
+            k += 1
+        look.ready()
+
+    def of_strength(self, effect, wanted, rng):
+        """Value of an effect so that it gains about `wanted`."""
+        id_, _, _, zero, first, (lo, hi), _, signature = effect
+        if id_ in self.module.AS_BUILT:
+            return rng.uniform(lo, hi)
+        if id_ in ("S4", "S7"):  # not in proportion: look for it
+            s = next(s for s in self.look.sensors if s.column == effect[1])
+            low, high = (2.0, hi)
+            for _ in range(12):
+                middle = np.sqrt(low * high)
+                low, high = (middle, high) if self.look.gain(self.seen(effect, middle, s)) < wanted else (low, middle)
+            return float(low * (rng.choice([-1, 1]) if id_ == "S7" else 1))
+        share = np.sqrt(wanted / max(self.look.gain(signature), 1e-9))
+        sign = rng.choice([-1, 1]) if lo < zero < hi and id_ not in self.module.ONE_SIDED else 1
+        return float(np.clip(zero + sign * share * (first - zero), lo, hi))
+
+    def seen(self, effect, value, sensor=None):
+        """What it shows at this value."""
+        if effect[0] in ("S4", "S7"):
+            sensor = sensor or next(s for s in self.look.sensors if s.column == effect[1])
+            return self.look.of_sensor(sensor, slow(value) if effect[0] == "S4" else shifted(value))
+        return effect[-1] * (value - effect[3]) / (effect[4] - effect[3])
+
+    def together(self, effect, signature):
+        """The effects that these data do not tell from this one."""
+        gain = self.look.gain(signature)
+        same = [effect[:2]]
+        for other in self.effects:
+            c = self.look.cosine(signature, other[-1])
+            # The other one, as strong as it has to be, must be possible.
+            need = (other[4] - other[3]) * self.look.inner(signature, other[-1]) / max(self.look.inner(other[-1], other[-1]), 1e-12)
+            possible = other[5][0] <= other[3] + need <= other[5][1]
+            if other[:2] != effect[:2] and possible and (gain * (1 - c * c) < TOGETHER or c > PARALLEL):
+                same.append(other[:2])
+        return [list(x) for x in same]
+
+
+def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
+    """Writes a case with these effects [(entry of d.effects, value)]; what the scorer has to know."""
+    module, rig = d.module, d.rig
+    sensors = copy.deepcopy(d.sensors)
+    within = (lambda: rng.choice([-1, 1]) * rng.uniform(0.9, 1.0)) if edge else (lambda: rng.uniform(-0.6, 0.6))
+    truth = dict(d.neutral)
+    for key, half in module.tolerances(rig).items():
+        truth[key] += half * within()
+    as_known = dict(d.neutral)
+    by_sensor = {}
+    for (id_, component, parameter, zero, _, _, variant, _), value in effects:
+        if variant is None:
+            by_sensor.setdefault(component, {})[parameter] = value
+            continue
+        for key, x in variant(value).items():
+            # The tolerance stays on top of the effect.
+            relative = d.neutral[key] != 0 and truth[key] != 0
+            truth[key] = x * truth[key] / d.neutral[key] if relative else x + truth[key] - d.neutral[key]
+            as_known[key] = x
+    if unknown is not None:
+        truth |= unknown
+    channels = module.simulate(rig, [truth])
+    clocks = {"logger": rng.uniform(-1, 1), "own": 0.0}
+    clocks["own"] = rig["every_s"] * (within() if edge else 0.5 * within())
+    odd = rng.choice([s.column for s in sensors if s.role == "compare"])
+    table = {}
+    for s in sensors:
+        y = channels[s.truth][0]
+        draw(s, y, rng, edge)
+        s.clock = "own" if s.column == odd else "logger"
+        table[s.column] = measure(s, y, d.at_s, rng, clocks[s.clock], by_sensor.get(s.column))
+        if s.blank:
+            table[s.column][still(channels[s.blank][0], d.at_s)] = np.nan
+    for s in sensors:  # the model sees the inputs as they are measured
+        if s.role == "input" and s.truth in module.INPUTS:
+            as_known = module.INPUTS[s.truth](as_known, s.draws["bias"], s.draws["gain"], as_is=True)
+    oracle = module.simulate(rig, [d.neutral | as_known])
+    spoil(table, d.at_s, rng, plain=spoiler is not None)
+    note = spoiler(table, sensors, d.at_s, rng) if spoiler else None
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "model.toml").write_text(module.model(rig))
+    (folder / "sensors.toml").write_text("\n".join(s.toml() for s in sensors))
+    (folder / "split.toml").write_text(module.split(rig))
+    with (folder / "data.csv").open("w") as file:
+        print("time_s", *table, sep=",", file=file)
+        for k, t in enumerate(d.at_s):
+            print(f"{t:.0f}", *("" if np.isnan(x[k]) else f"{x[k]:.6g}" for x in table.values()), sep=",", file=file)
+    floor = {}
+    for s in sensors:
+        if s.role == "compare" and spoiler is None:
+            x = s.perfect(oracle[s.truth][0], d.at_s, by_sensor.get(s.column))
+            show = module.is_show(rig, d.at_s) & np.isfinite(table[s.column])
+            floor[s.column] = float(np.sqrt(np.mean((x[show] - table[s.column][show]) ** 2)))
+    return {"note": note, "oracle": floor}
+
+
+def case_set(d, out, counts, tag):
+    """Writes the cases of one draw; their answers."""
+    rng, answers = d.rng, {}
+    head = {"rig": d.module.NAME, "rich": d.rig["rich"], "seed": d.seed}
+    number = iter(range(1000))
+
+    def add(kind, **what):
+        name = f"{tag}-{next(number):02d}"
+        answer = make(d, out / name, np.random.default_rng([d.seed, len(answers)]), **what)
+        answers[name] = head | {"kind": kind, "edge": what.get("edge", False), "effects": [], "class": []} | answer
+        return answers[name]
+
+    def effect(stratum_, other_than=()):
+        """A random effect of about this visibility."""
+        ids = sorted({e[0] for e in d.effects})
+        for _ in range(200):
+            id_ = rng.choice(ids)
+            chosen = rng.choice([k for k, e in enumerate(d.effects) if e[0] == id_])
+            e = d.effects[chosen]
+            value = d.of_strength(e, np.exp(rng.uniform(*np.log(STRATA[stratum_]))), rng)
+            signature = d.seen(e, value)
+            if e[:2] in other_than:
+                continue
+            if stratum(d.look.gain(signature)) == stratum_:
+                return e, value, signature
+        return None
+
+    for k in range(counts["null"]):
+        add("null", edge=bool(k % 2))
+    for stratum_, n in counts["single"].items():
+        for _ in range(n):
+            if (found := effect(stratum_)) is None:
+                continue
+            e, value, signature = found
+            a = add("single", effects=[(e, value)])
+            a |= {"effects": [{"id": e[0], "component": e[1], "parameter": e[2], "value": value}], "stratum": stratum_,
+                  "gain": d.look.gain(signature), "class": d.together(e, signature)}
+    for _ in range(counts["pair"]):
+        first, second = effect("easy"), None
+        if first:
+            second = effect("easy", other_than=[first[0][:2]])
+        if not second:
+            continue
+        a = add("pair", effects=[first[:2], second[:2]])
+        a["effects"] = [{"id": e[0], "component": e[1], "parameter": e[2], "value": v} for e, v, _ in (first, second)]
+        a["class"] = d.together(first[0], first[2]) + d.together(second[0], second[2])
+        a["classes"] = [d.together(first[0], first[2]), d.together(second[0], second[2])]
+    for _ in range(counts["unknown"]):
+        what, change = d.module.unknown(d.rig, rng)
+        add("unknown", unknown=change)["note"] = what
+    for _ in range(counts["data"]):
+        add("data", spoiler=broken.any_of(rng))
+    return answers
+
+
+COUNTS = {"null": 3, "single": {"hard": 1, "medium": 2, "easy": 3}, "pair": 1, "unknown": 1, "data": 1}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--rig", choices=RIGS, default="R1")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--draws", type=int, default=2)
+    parser.add_argument("--nulls", type=int, default=COUNTS["null"])
+    parser.add_argument("--only-nulls", action="store_true")
+    wanted = parser.parse_args()
+    counts = dict(COUNTS, null=wanted.nulls)
+    if wanted.only_nulls:
+        counts = {"null": wanted.nulls, "single": {}, "pair": 0, "unknown": 0, "data": 0}
+    module = importlib.import_module(RIGS[wanted.rig])
+    file = wanted.out / "answers.json"
+    for k in range(wanted.draws):
+        tag = f"{wanted.rig}-{wanted.seed + k}"
+        answers = json.loads(file.read_text()) if file.exists() else {}
+        if any(name.startswith(f"{tag}-") for name in answers):
+            continue
+        d = Draw(module, wanted.seed + k, rich=bool(k % 2 == 0))
+        new = case_set(d, wanted.out, counts, tag)
+        answers = json.loads(file.read_text()) if file.exists() else {}
+        file.write_text(json.dumps(answers | new, indent=1))
+        print(tag, len(new), "cases", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,223 @@
+"""R3: two houses feed in with pumps, the third takes heat: the hot line of the laboratory's three-house case.
+
+The cold line is wide (one pressure, as boundaries); what feeds in has the temperature that is measured. Pumps after
+`H = H0 n^2 - k m^2`, check valves, friction after Colebrook and White with the viscosity of each pipe's water. Rich: both flows, temperatures
+at the joint of the first house and at the third, pressure losses of both lines. Poor: heat meters.
+"""
+
+import numpy as np
+
+from pipe import Pipe
+from sensors import TEMPERATURE, Sensor
+
+NAME = "R3"
+BLOCK_S, BLOCKS = 300.0, 12
+FIRST_S = 280  # until the water that was there at the start has left
+STEEL = 7850.0 * 470.0
+AS_BUILT = {"P1"}
+ONE_SIDED = {"P5", "P7", "P8", "S4"}
+PIPES = [("stub1", "b1", "j1"), ("line12", "j1", "j2"), ("stub2", "b2", "j2"), ("line23", "j2", "j3")]
+KVS_CHECK = 6.0
+
+
+def _warmer(key):
+    def change(p, bias, gain, as_is=False):
+        return p | {key: p[key] + bias + (0.0 if as_is else (gain - 1) * 50.0)}
+
+    return change
+
+
+INPUTS = {"t1": _warmer("t1_k"), "t2": _warmer("t2_k")}
+
+
+def duration_s(rig):
+    return BLOCK_S * BLOCKS
+
+
+def draw(rng, rich):
+    inner = rng.choice([0.0217, 0.0272])
+    wall = bool(rng.random() < 0.3)
+    lengths = {"stub1": rng.uniform(4, 9), "line12": rng.uniform(35, 60), "stub2": rng.uniform(4, 9), "line23": rng.uniform(15, 30)}
+    pipes = [dict(name=n, length=float(np.round(lengths[n], 1)), inner=float(inner), outer=float(np.round(inner + 2 * rng.uniform(0.0012, 0.003), 4)),
+                  resistance=float(np.round(rng.uniform(2.5, 6), 2)), roughness=1e-5, wall=wall and n.startswith("line")) for n, _, _ in PIPES]
+    speeds = {1: rng.uniform(0.85, 1.0, BLOCKS), 2: rng.uniform(0.8, 0.92, BLOCKS)}
+    off = {1: [1, 6, 11] if rng.random() < 0.6 else [], 2: [3, 5, 8]}  # validate, identify, show; and others
+    return dict(pipes=pipes, rich=rich, speeds=speeds, off=off, kappa=rng.uniform(0.4, 0.9, BLOCKS), head=float(np.round(rng.uniform(350, 500))),
+                free=float(np.round(rng.uniform(45, 60))), kvs=float(np.round(rng.uniform(2.5, 4.0), 2)), around=float(np.round(rng.uniform(8, 16), 1)),
+                t1=rng.uniform(52, 78, BLOCKS), t2=rng.uniform(52, 78, BLOCKS), start=float(rng.uniform(50, 60)), shift=rng.uniform(10, 70, (2, BLOCKS)),
+                every_s=float(rng.choice([10, 10, 20])), pauses=True)
+
+
+def program(rig):
+    n = int(BLOCK_S * BLOCKS) + 120
+    t = np.arange(n, dtype=float)
+
+    def steps(values, ramp, shift):
+        points_t, points, last = [0.0], [values[0]], values[0]
+        for i, v in enumerate(values):
+            points_t += [i * BLOCK_S + shift[i] + 1, i * BLOCK_S + shift[i] + ramp]
+            points += [last, v]
+            last = v
+        return np.interp(t, points_t, points)
+
+    out = {"kappa": steps(rig["kappa"], 30, rig["shift"][0])}
+    for k in (1, 2):
+        out[f"t{k}"] = steps(rig[f"t{k}"], 50, rig["shift"][k - 1]) + 0.3 * np.sin(2 * np.pi * t / (170 + 40 * k))
+        speed = steps(rig["speeds"][k], 20, rig["shift"][1] + 20)
+        for i in rig["off"][k]:
+            begin = int(i * BLOCK_S + 120)
+            speed[begin : begin + 110] = 0.0
+            speed[begin - 10 : begin] *= np.linspace(1, 0.1, 10)
+            speed[begin + 110 : begin + 120] *= np.linspace(0.1, 1, 10)
+        out[f"n{k}"] = speed
+    return out
+
+
+def neutral(rig):
+    p = {"around_k": 0.0, "drift_k": 0.3, "t1_k": 0.0, "t2_k": 0.0, "head1": 1.0, "head2": 1.0, "kv": 1.0, "extra1": 0.0}
+    for pipe in rig["pipes"]:
+        n = pipe["name"]
+        geometry = STEEL * np.pi / 4 * (pipe["outer"] ** 2 - pipe["inner"] ** 2)
+        p |= {f"{n}.length": 1.0, f"{n}.loss": 1.0, f"{n}.around_k": 0.0, f"{n}.film": 1.0, f"{n}.dispersion": 0.003, f"{n}.standstill": 1.0,
+              f"{n}.friction": 1.0, f"{n}.wall": geometry if pipe["wall"] else 0.0, f"{n}.heater_w": 0.0}
+    return p
+
+
+def simulate(rig, variants):
+    inputs, count = program(rig), len(variants)
+    n = inputs["kappa"].size
+
+    def of(key):
+        return np.array([v[key] for v in variants])
+
+    pipes = {}
+    for pipe in rig["pipes"]:
+        k = pipe["name"]
+        pipes[k] = Pipe(count, pipe["length"] * of(f"{k}.length"), pipe["inner"], of(f"{k}.wall"), pipe["resistance"] / of(f"{k}.loss"), rig["start"],
+                        pipe["roughness"], film=of(f"{k}.film"), dispersion_m2_s=of(f"{k}.dispersion"), standstill=of(f"{k}.standstill"),
+                        friction=of(f"{k}.friction"), cells=60 if k.startswith("stub") else 200)
+    own_k = {k: of(f"{k}.around_k") for k in pipes}
+    heater = {k: of(f"{k}.heater_w") for k in pipes}
+    t_k, head, kv, extra = {i: of(f"t{i}_k") for i in (1, 2)}, {i: of(f"head{i}") * rig["head"] * 100 for i in (1, 2)}, of("kv"), of("extra1")
+    around_k, drift_k = of("around_k"), of("drift_k")
+    rho = 985.0
+    out = {c: np.empty((count, n)) for c in ("m1", "m2", "m3", "j1.t", "j2.t", "j3.t", "line12.dp", "line23.dp")}
+    per_kg = {k: np.full(count, 1e4) for k in pipes}  # Pa/(kg/s)^2
+    check = 1e5 * (3600 / (rho * KVS_CHECK)) ** 2 * rho / 1000
+    pump = rig["head"] * 100 / (rig["free"] / 60000 * rho) ** 2
+    t1 = t2 = tj1 = tj2 = np.full(count, rig["start"])
+    for second in range(-300, n):
+        i = max(second, 0)
+        valve = 1e5 * (3600 / (rho * rig["kvs"] * kv * inputs["kappa"][i])) ** 2 * rho / 1000
+        common = per_kg["line23"] + valve
+        own1 = pump + check + per_kg["stub1"] + per_kg["line12"] + extra * (second > 1500)
+        own2 = pump + check + per_kg["stub2"]
+        e1, e2 = (head[k] * inputs[f"n{k}"][i] ** 2 for k in (1, 2))
+        low, high = np.zeros(count), np.sqrt(np.maximum(e1, e2) / common)
+        for _ in range(30):
+            m = (low + high) / 2
+            got = np.sqrt(np.maximum(e1 - common * m * m, 0) / own1) + np.sqrt(np.maximum(e2 - common * m * m, 0) / own2)
+            low, high = np.where(got > m, m, low), np.where(got > m, high, m)
+        m1, m2 = np.sqrt(np.maximum(e1 - common * m * m, 0) / own1), np.sqrt(np.maximum(e2 - common * m * m, 0) / own2)
+        m1, m2 = np.where(m1 < 1e-4, 0.0, m1), np.where(m2 < 1e-4, 0.0, m2)
+        flows = {"stub1": m1, "line12": m1, "stub2": m2, "line23": m1 + m2}
+        around = rig["around"] + around_k + drift_k * np.sin(2 * np.pi * i / 4000)
+        heat = {k: np.where(flows[k] > 1e-3, heater[k] * (second % 600 < 260) / np.maximum(flows[k], 0.02) / 4180.0, 0.0) for k in pipes}
+        t1 = pipes["stub1"].second(m1, inputs["t1"][i] + t_k[1], around + own_k["stub1"]) + heat["stub1"]
+        tj1 = np.where(m1 > 0, t1, tj1)
+        t12 = pipes["line12"].second(m1, tj1, around + own_k["line12"]) + heat["line12"]
+        t2 = pipes["stub2"].second(m2, inputs["t2"][i] + t_k[2], around + own_k["stub2"]) + heat["stub2"]
+        total = m1 + m2
+        tj2 = np.where(total > 0, (m1 * t12 + m2 * t2) / np.maximum(total, 1e-9), tj2)
+        tj3 = pipes["line23"].second(total, tj2, around + own_k["line23"]) + heat["line23"]
+        for k, p in pipes.items():
+            per_kg[k] = np.where(flows[k] > 1e-3, p.dp / np.maximum(flows[k], 1e-3) ** 2, per_kg[k])
+        for c, x in (("m1", m1), ("m2", m2), ("m3", total), ("j1.t", tj1 + 273.15), ("j2.t", tj2 + 273.15), ("j3.t", tj3 + 273.15),
+                     ("line12.dp", pipes["line12"].dp), ("line23.dp", pipes["line23"].dp)):
+            out[c][:, i] = x
+    for c in ("t1", "t2"):
+        out[c] = np.tile(inputs[c] + 273.15, (count, 1))
+    for c in ("n1", "n2", "kappa"):
+        out[c] = np.tile(inputs[c], (count, 1))
+    return out
+
+
+def sensors(rig):
+    flow = dict(unit="kg_h", quantisation=1.0, klass="mid" if rig["rich"] else "flow_class_2")
+    command = dict(role="input", klass="electric_0_2", unit="1", quantisation=0.001)
+    every = [Sensor("T_1", "s1.temperature_k", "input", "pt100_a", truth="t1", **TEMPERATURE),
+             Sensor("T_2", "s2.temperature_k", "input", "pt100_a", truth="t2", **TEMPERATURE),
+             Sensor("n_1", "pump1.speed", truth="n1", **command), Sensor("n_2", "pump2.speed", truth="n2", **command),
+             Sensor("kappa", "valve3.kappa", truth="kappa", **command),
+             Sensor("flow_1", "pump1.m_flow_kg_s", "compare", truth="m1", **flow),
+             Sensor("flow_2", "pump2.m_flow_kg_s", "compare", truth="m2", **flow),
+             Sensor("T_3", "j3.t_k", "compare", "pt100_a", truth="j3.t", **TEMPERATURE)]
+    if rig["rich"]:
+        every += [Sensor("T_j1", "j1.t_k", "compare", "pt100_a", truth="j1.t", blank="m1", **TEMPERATURE),
+                  Sensor("dp_12", "line12.dp_pa", "compare", "dp_0_25", truth="line12.dp", unit="hPa", quantisation=0.1),
+                  Sensor("dp_23", "line23.dp_pa", "compare", "dp_0_25", truth="line23.dp", unit="hPa", quantisation=0.1)]
+    return every
+
+
+def tolerances(rig):
+    p = {"around_k": 0.5, "drift_k": 0.3, "head1": 0.002, "head2": 0.002, "kv": 0.003}
+    for pipe in rig["pipes"]:
+        n = pipe["name"]
+        p |= {f"{n}.length": 0.005, f"{n}.loss": 0.05, f"{n}.film": 0.1, f"{n}.friction": 0.01, f"{n}.wall": 0.02 * neutral(rig)[f"{n}.wall"]}
+    return p
+
+
+def effects(rig):
+    for pipe in rig["pipes"]:
+        n = pipe["name"]
+        geometry = STEEL * np.pi / 4 * (pipe["outer"] ** 2 - pipe["inner"] ** 2)
+        if n.startswith("line"):
+            if not pipe["wall"]:
+                yield "P1", n, "wall_capacity_j_m_k", (lambda x, n=n: {f"{n}.wall": x}), geometry, (0.8 * geometry, 1.2 * geometry), 0.0
+            yield "P7", n, "dispersion_m2_s", (lambda x, n=n: {f"{n}.dispersion": max(x, 0.003)}), 0.1, (0.01, 1.0), 0.0
+        yield "P2", n, "factor", (lambda x, n=n: {f"{n}.loss": x}), 1.5, (0.3, 6.0), 1.0
+        yield "P3", n, "difference_k", (lambda x, n=n: {f"{n}.around_k": x}), 5.0, (-10.0, 10.0), 0.0
+        yield "P5", n, "factor", (lambda x, n=n: {f"{n}.standstill": x}), 2.5, (0.2, 5.0), 1.0
+        yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.08, (0.7, 1.3), 1.0
+        yield "P8", n, "factor", (lambda x, n=n: {f"{n}.friction": x}), 1.3, (0.5, 5.0), 1.0
+
+
+def unknown(rig, rng):
+    n = ["line12", "line23"][rng.integers(2)]
+    return [("hidden periodic heater", {f"{n}.heater_w": rng.uniform(800, 2500)}),
+            ("a strainer blocks after 25 min", {"extra1": rng.uniform(0.5, 3) * 1e5}),
+            ("cold water drawn in at the joint now and then", {f"{n}.heater_w": -rng.uniform(800, 2500)})][rng.integers(3)]
+
+
+def model(rig):
+    lines = ["format = 1", "[model]", 'name = "three houses"', "[run]", f'until = "{BLOCK_S * BLOCKS:.0f}s"', 'step = "5s"', 'record = "10s"',
+             f"initial_degc = {rig['start']:.1f}", "[fluid]", 'kind = "water"', "follow_temperature = true", "[ground]", f"temperature_degc = {rig['around']}"]
+    for node in ("s1", "s2", "out"):
+        lines += ["[[node]]", f'id = "{node}"', 'kind = "pressure_boundary"', "pressure_bar = 1.5", f"temperature_degc = {rig['start']:.1f}"]
+    for node in ("a1", "b1", "a2", "b2", "j1", "j2", "j3"):
+        lines += ["[[node]]", f'id = "{node}"', 'kind = "junction"']
+    for k in (1, 2):
+        lines += ["[[edge]]", f'id = "pump{k}"', 'kind = "pump"', f'from = "s{k}"', f'to = "a{k}"', f"head_max_hpa = {rig['head']}",
+                  f"free_flow_l_min = {rig['free']}", "rise_time_s = 0",
+                  "[[edge]]", f'id = "check{k}"', 'kind = "check_valve"', f'from = "a{k}"', f'to = "b{k}"', f"kvs_m3_h = {KVS_CHECK}", "leakage = 1e-5"]
+    for pipe, (name, a, b) in zip(rig["pipes"], PIPES):
+        lines += ["[[edge]]", f'id = "{name}"', 'kind = "pipe"', f'from = "{a}"', f'to = "{b}"', f"length_m = {pipe['length']}",
+                  f"inner_diameter_mm = {pipe['inner'] * 1e3:.1f}", f"outer_diameter_mm = {pipe['outer'] * 1e3:.1f}",
+                  f"roughness_mm = {pipe['roughness'] * 1e3}", f"insulation_resistance_k_m_w = {pipe['resistance']}"]
+        if pipe["wall"]:
+            lines += ['wall = "film"']
+    lines += ["[[edge]]", 'id = "valve3"', 'kind = "valve"', 'from = "j3"', 'to = "out"', f"kvs_m3_h = {rig['kvs']}", 'command = "kappa"',
+              f"kappa = {rig['kappa'][0]:.3f}", "stroke_time_s = 0"]
+    return "\n".join(lines) + "\n"
+
+
+def split(rig):
+    """Blocks of 5 min in turns, the first 40 s of each left out, of the run 280 s."""
+    turns = ["identify", "validate", "identify", "show"]
+    return "".join(f'[[block]]\nrole = "{turns[i % 4]}"\nfrom_s = {i * BLOCK_S + (40 if i else FIRST_S)}\nuntil_s = {(i + 1) * BLOCK_S - 1}\n'
+                   for i in range(BLOCKS))
+
+
+def is_show(rig, at_s):
+    block = (at_s // BLOCK_S).astype(int)
+    return (block % 4 == 3) & (at_s >= block * BLOCK_S + 40) & (at_s <= (block + 1) * BLOCK_S - 1)

@@ -1,0 +1,164 @@
+"""The table of a score: shares with Wilson intervals, medians, calibration."""
+
+import statistics
+
+
+def wilson(hits, n, z=1.96):
+    """95 % interval of a share."""
+    if n == 0:
+        return 0.0, 1.0
+    p = hits / n
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z * ((p * (1 - p) + z * z / (4 * n)) / n) ** 0.5 / (1 + z * z / n)
+    return middle - half, middle + half
+
+
+def share(outcomes):
+    outcomes = list(outcomes)
+    n, hits = len(outcomes), sum(map(bool, outcomes))
+    if n == 0:
+        return "no case"
+    lo, hi = wilson(hits, n)
+    return f"{100 * hits / n:.0f} % ({100 * lo:.0f} to {100 * hi:.0f}; {hits}/{n})"
+
+
+def quantile(values, q):
+    values = sorted(values)
+    return values[min(int(q * len(values)), len(values) - 1)] if values else float("nan")
+
+
+def pairs_of(effects):
+    return [(e["id"], e["component"]) for e in effects or []]
+
+
+def head(result):
+    """The first name of the answer."""
+    if result["verdict"] == "class" and result.get("class"):
+        return tuple(result["class"][0])
+    return pairs_of(result.get("effects"))[0] if result.get("effects") else None
+
+
+def named(result):
+    return result["verdict"] in ("named", "class")
+
+
+def the_set(result):
+    return [tuple(x) for x in result.get("class") or []] or pairs_of(result.get("effects"))[:1]
+
+
+def ece(results, right):
+    """Expected calibration error and Brier score of the probability of the first name."""
+    stated = [(r["effects"][0]["probability"], right(n)) for n, r in results.items() if named(r) and r.get("effects")]
+    if not stated:
+        return float("nan"), float("nan"), 0
+    error = 0.0
+    for k in range(5):
+        group = [(p, ok) for p, ok in stated if k / 5 <= p < (k + 1) / 5 or (k == 4 and p == 1.0)]
+        if group:
+            error += abs(sum(p for p, _ in group) - sum(ok for _, ok in group)) / len(stated)
+    return error, sum((p - ok) ** 2 for p, ok in stated) / len(stated), len(stated)
+
+
+def captured(answer, result):
+    """Share of the gap of all affected sensors that could be closed; None where there is hardly any."""
+    before, after = result.get("show_rmse_before") or {}, result.get("show_rmse_after") or {}
+    gaps = [(before[c], after[c], floor) for c, floor in answer["oracle"].items() if c in before and before[c] > 1.5 * floor]
+    return statistics.mean((b - a) / (b - f) for b, a, f in gaps) if gaps else None
+
+
+def metrics(answers, results):
+    """Rows: metric, reached, target."""
+    def of(kind, more=lambda a: True):
+        return {n: a for n, a in answers.items() if a["kind"] == kind and more(a)}
+
+    known = of("single", lambda a: a.get("registered", True))
+    seen = {n: a for n, a in known.items() if a["stratum"] in ("medium", "easy")}
+    detected = {n: a for n, a in seen.items() if results[n]["verdict"] not in ("nothing", None)}
+    truth = {n: (a["effects"][0]["id"], a["effects"][0]["component"]) for n, a in known.items()}
+    classes = {n: [tuple(x) for x in a["class"]] for n, a in known.items()}
+    right = lambda n: n in truth and head(results[n]) in classes[n]  # noqa: E731
+    nulls, unknown, data, pairs = of("null"), of("unknown"), of("data"), of("pair")
+    answered = {n: a for n, a in seen.items() if named(results[n])}
+
+    def parameter(n):
+        e, t = results[n]["effects"][0], known[n]["effects"][0]
+        if (e["id"], e["component"]) != truth[n] or t["parameter"] not in e["params"]:
+            return None
+        p, zero = e["params"][t["parameter"]], {"factor": 1.0, "gain": 1.0}.get(t["parameter"], 0.0)
+        return abs(p["value"] - t["value"]) / max(abs(t["value"] - zero), 1e-9), p["lo"] <= t["value"] <= p["hi"]
+
+    fitted = [x for n in answered if results[n].get("effects") and (x := parameter(n))]
+    gaps = [x for n, a in answered.items() if right(n) and (x := captured(a, results[n])) is not None]
+    worse = [(n, c) for n, a in answers.items() if named(results[n]) for c, b in (results[n].get("show_rmse_before") or {}).items()
+             if c in a["oracle"] and b < 1.2 * a["oracle"][c] and results[n]["show_rmse_after"][c] > 1.02 * b]
+    unaffected = [(n, c) for n, a in answers.items() if named(results[n]) for c, b in (results[n].get("show_rmse_before") or {}).items()
+                  if c in a["oracle"] and b < 1.2 * a["oracle"][c]]
+    error, brier, n_stated = ece({n: r for n, r in results.items() if n in answers}, right)
+    sizes = [len(the_set(results[n])) for n in answered]
+    both, one, third = [], [], []
+    for n, a in pairs.items():
+        got = pairs_of(results[n].get("effects"))
+        hit = [any(tuple(x) in got for x in c) for c in a.get("classes", [[], []])]
+        if results[n]["verdict"] == "class" and results[n].get("class"):
+            hit = [h or any(x in c for x in results[n]["class"]) for h, c in zip(hit, a["classes"])]
+        both.append(all(hit))
+        one.append(any(hit))
+        third.append(len(got) > 2)
+    seconds = [results[n]["seconds"] for n in answers]
+    z = [max(v for v in results[n]["z_after"].values()) for n in answered if right(n) and results[n].get("z_after")]
+    return [
+        ("detection, medium and easy", share(results[n]["verdict"] not in ("nothing", None) for n in seen), ">= 95 %"),
+        ("detection, hard", share(results[n]["verdict"] not in ("nothing", None) for n, a in known.items() if a["stratum"] == "hard"), "-"),
+        ("false alarms on nulls", share(results[n]["verdict"] != "nothing" for n in nulls), "<= 2 %"),
+        ("- in the middle of tolerances", share(results[n]["verdict"] != "nothing" for n, a in nulls.items() if not a["edge"]), ""),
+        ("- at their edge", share(results[n]["verdict"] != "nothing" for n, a in nulls.items() if a["edge"]), ""),
+        ("first name in the true class, of all medium and easy", share(right(n) for n in seen), ">= 90 %"),
+        ("- of those with a name", share(right(n) for n in answered), ""),
+        ("first name exactly right", share(head(results[n]) == truth[n] for n in seen), ">= 80 %"),
+        ("truth among the first three", share(truth[n] in ([head(results[n])] + pairs_of(results[n].get("tried")))[:4] for n in detected), ">= 97 %"),
+        ("truth in the set", share(truth[n] in the_set(results[n]) for n in answered), "93 to 98 %"),
+        ("mean size of the set", f"{statistics.mean(sizes):.1f}" if sizes else "no case", "<= 2.2"),
+        ("component right, rich", share(head(results[n])[1] == truth[n][1] for n, a in answered.items() if a["rich"] and head(results[n])), ">= 90 %"),
+        ("component right, poor", share(head(results[n])[1] == truth[n][1] for n, a in answered.items() if not a["rich"] and head(results[n])), ">= 70 %"),
+        ("outside of the catalogue: unexplained or data problem", share(results[n]["verdict"] in ("unexplained", "data_problem") for n in unknown), ">= 80 %"),
+        ("outside of the catalogue: wrongly named", share(named(results[n]) for n in unknown), "<= 10 %"),
+        ("error of the parameter, median", f"{100 * statistics.median(x for x, _ in fitted):.1f} % ({len(fitted)} cases)" if fitted else "no case", "<= 10 %"),
+        ("its 95 % interval holds the truth", share(ok for _, ok in fitted), "90 to 98 %"),
+        ("share of the gap closed, median (10th percentile)", f"{statistics.median(gaps):.2f} ({quantile(gaps, 0.1):.2f}; {len(gaps)} cases)" if gaps else "no case", ">= 0.90 (0.75)"),
+        ("residuals after at most 1.2 sigma at every sensor", share(x <= 1.2 for x in z), ">= 80 %"),
+        ("calibration: ECE, Brier", f"{error:.2f}, {brier:.2f} ({n_stated} names)", "<= 0.05"),
+        ("pairs: both", share(both), ">= 60 %"),
+        ("pairs: at least one", share(one), ">= 95 %"),
+        ("pairs: a third one", share(third), "<= 10 %"),
+        ("broken data: data problem", share(results[n]["verdict"] == "data_problem" for n in data), ""),
+        ("broken data: an effect of the plant is named", share(named(results[n]) and (head(results[n]) or ("S", ""))[0][0] != "S" for n in data), "0"),
+        ("unaffected sensors made worse by more than 2 %", f"{len(worse)} of {len(unaffected)}", "0"),
+        ("explained models pass `anergy check`", share(r["explained_checks"] for n, r in results.items() if "explained_checks" in r), "all"),
+        ("no answer", share(results[n]["verdict"] is None for n in answers), "0"),
+        ("seconds a case, median (95th percentile)", f"{statistics.median(seconds):.0f} ({quantile(seconds, 0.95):.0f})" if seconds else "-", "<= 20 (120)"),
+    ]
+
+
+def table(answers, results, note=""):
+    """The whole page as Markdown."""
+    kinds = {k: sum(a["kind"] == k for a in answers.values()) for k in ("null", "single", "pair", "unknown", "data")}
+    lines = ["# Hidden effects: what `explain` finds", "", note, "",
+             f"{len(answers)} cases: " + ", ".join(f"{n} {k}" for k, n in kinds.items()) + ".", ""]
+    groups = [("all", lambda a: True)]
+    for rig in sorted({a["rig"] for a in answers.values()}):
+        groups += [(f"{rig} rich", lambda a, r=rig: a["rig"] == r and a["rich"]), (f"{rig} poor", lambda a, r=rig: a["rig"] == r and not a["rich"])]
+    columns = []
+    for _, belongs in groups:
+        of = {n: a for n, a in answers.items() if belongs(a)}
+        columns.append(metrics(of, {n: results[n] for n in of}))
+    lines += ["| metric | target | " + " | ".join(name for name, _ in groups) + " |", "|---" * (len(groups) + 2) + "|"]
+    for k, (name, _, target) in enumerate(columns[0]):
+        lines.append(f"| {name} | {target} | " + " | ".join(c[k][1] for c in columns) + " |")
+    lines += ["", "## By effect", "", "Medium and easy single effects.", "", "| effect | cases | detected | first name in the class | exactly |", "|---|---|---|---|---|"]
+    single = {n: a for n, a in answers.items() if a["kind"] == "single" and a["stratum"] != "hard"}
+    for id_ in sorted({a["effects"][0]["id"] for a in single.values()}):
+        own = {n: a for n, a in single.items() if a["effects"][0]["id"] == id_}
+        hits = sum(head(results[n]) in [tuple(x) for x in a["class"]] for n, a in own.items())
+        exact = sum(head(results[n]) == (a["effects"][0]["id"], a["effects"][0]["component"]) for n, a in own.items())
+        lines.append(f"| {id_} | {len(own)} | {sum(results[n]['verdict'] not in ('nothing', None) for n in own)} | {hits} | {exact} |")
+    return "\n".join(lines) + "\n"
