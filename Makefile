@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers bench bench-thermal bench-memory bench-peers instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers explain-score bench bench-thermal bench-memory bench-peers instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -77,6 +77,22 @@ peers: .venv-peers/.installed ## Imported networks against EPANET and pandapipes
 	cargo build --release -p anergy
 	.venv-peers/bin/python tests/peers/epanet_import.py --out docs/src/validation/epanet.md
 	.venv-peers/bin/python tests/peers/pandapipes_import.py --out docs/src/validation/pandapipes.md
+
+.venv-score/.installed:
+	$(PYTHON) -m venv .venv-score
+	.venv-score/bin/python -m pip install --quiet --disable-pip-version-check numpy numba
+	touch $@
+
+# Seeds below 1 000 000 are of development, from there on for reports. Restartable: what has an answer is not run again.
+SEED ?= 1
+DRAWS ?= 9
+SCORE ?= target/hidden-effects-$(SEED)
+explain-score: .venv-score/.installed ## What explain finds in data with a hidden effect: 200 cases, table in docs (SEED, DRAWS)
+	cargo build --release -p anergy
+	for rig in R1 R3; do \
+		.venv-score/bin/python tests/hidden_effects/cases.py $(SCORE) --rig $$rig --seed $(SEED) --draws $(DRAWS) || exit 1; done
+	.venv-score/bin/python tests/hidden_effects/score.py $(SCORE) --out docs/src/validation/explain.md \
+		--engine "$$(git rev-parse --short HEAD)"
 
 bench: ## Criterion benches
 	cargo bench -p anergy-benches

@@ -48,7 +48,15 @@ class Draw:
         variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((0.5, 1.0), (0.0, 1.02))]
         variants += [variant(look) for _, _, _, variant, look, _, _ in self.plant]
         channels = module.simulate(self.rig, [self.neutral | v for v in variants])
-        look = self.look = Look(self.rig, self.sensors, channels, self.at_s)
+        look = self.look = Look(self.sensors, channels, self.at_s)
+        for j, s in enumerate(inputs):
+            _, _, noise = s.limits(channels[s.truth][0])
+            first = 1 + len(tolerances) + 2 * j
+            if s.kind == "k":
+                look.noisier(look.of(channels, first) / 0.5, np.hypot(noise, s.resolution_si() / 12**0.5))
+            else:
+                mean = np.mean(channels[s.truth][0])
+                look.noisier(look.of(channels, first + 1) / 0.02, np.hypot(noise, s.resolution_si() / 12**0.5) / mean)
         k = 1
         for _ in tolerances:
             look.tolerate(look.of(channels, k), 1 / ROOT3)
@@ -66,11 +74,11 @@ class Draw:
                 self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, 0.05 * by_gain))
         for s in look.sensors:
             bias, gain, _ = s.limits(channels[s.truth][0])
-            one = look.of_sensor(s, lambda _, y: y + 1.0)
-            same = look.of_sensor(s, lambda _, y: 1.05 * y)
+            one = look.of_sensor(s, lambda y: y + 1.0)
+            same = look.of_sensor(s, lambda y: 1.05 * y)
             look.tolerate(one, bias / ROOT3)
             look.tolerate(same, gain / ROOT3 / 0.05)
-            look.tolerate(look.of_sensor(s, shifted(1.0)), self.rig["every_s"] / ROOT3)
+            look.tolerate(look.of_sensor(s, shifted(self.rig["every_s"] / ROOT3)))
             look.tolerate(look.of_sensor(s, slow(max(s.lag_s, 1.0) * 0.2)), 1 / ROOT3)
             if s.kind == "k":
                 self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, one))
@@ -89,20 +97,24 @@ class Draw:
         if id_ in self.module.AS_BUILT:
             return rng.uniform(lo, hi)
         if id_ in ("S4", "S7"):  # not in proportion: look for it
-            s = next(s for s in self.look.sensors if s.column == effect[1])
             low, high = (2.0, hi)
             for _ in range(12):
                 middle = np.sqrt(low * high)
-                low, high = (middle, high) if self.look.gain(self.seen(effect, middle, s)) < wanted else (low, middle)
+                low, high = (middle, high) if self.gain(effect, middle) < wanted else (low, middle)
             return float(low * (rng.choice([-1, 1]) if id_ == "S7" else 1))
         share = np.sqrt(wanted / max(self.look.gain(signature), 1e-9))
         sign = rng.choice([-1, 1]) if lo < zero < hi and id_ not in self.module.ONE_SIDED else 1
         return float(np.clip(zero + sign * share * (first - zero), lo, hi))
 
-    def seen(self, effect, value, sensor=None):
+    def gain(self, effect, value):
+        gain = self.look.gain(self.seen(effect, value))
+        # A clock is always off by up to an interval, and fronts are no straight lines.
+        return min(gain, 0.5 * (value * ROOT3 / self.rig["every_s"]) ** 2) if effect[0] == "S7" else gain
+
+    def seen(self, effect, value):
         """What it shows at this value."""
         if effect[0] in ("S4", "S7"):
-            sensor = sensor or next(s for s in self.look.sensors if s.column == effect[1])
+            sensor = next(s for s in self.look.sensors if s.column == effect[1])
             return self.look.of_sensor(sensor, slow(value) if effect[0] == "S4" else shifted(value))
         return effect[-1] * (value - effect[3]) / (effect[4] - effect[3])
 
@@ -199,7 +211,7 @@ def case_set(d, out, counts, tag):
             signature = d.seen(e, value)
             if e[:2] in other_than:
                 continue
-            if stratum(d.look.gain(signature)) == stratum_:
+            if stratum(d.gain(e, value)) == stratum_:
                 return e, value, signature
         return None
 
@@ -212,7 +224,7 @@ def case_set(d, out, counts, tag):
             e, value, signature = found
             a = add("single", effects=[(e, value)])
             a |= {"effects": [{"id": e[0], "component": e[1], "parameter": e[2], "value": value}], "stratum": stratum_,
-                  "gain": d.look.gain(signature), "class": d.together(e, signature)}
+                  "gain": d.gain(e, value), "class": d.together(e, signature)}
     for _ in range(counts["pair"]):
         first, second = effect("easy"), None
         if first:

@@ -11,43 +11,49 @@ from sensors import ROOT3, lagged
 
 
 class Look:
-    """Readings of all compared sensors of a rig as one vector, over the noise."""
+    """Readings of all compared sensors of a rig as one vector, over the noise.
 
-    def __init__(self, rig, sensors, base, at_s):
+    Noise: of the sensor, its resolution, and the moment of a reading, which is only known to lie within its interval.
+    """
+
+    def __init__(self, sensors, base, at_s):
         self.sensors = [s for s in sensors if s.role == "compare"]
-        self.at_s, self.every = at_s, at_s[1] - at_s[0]
+        self.at_s, self.channels = at_s, base
         self.base = self.readings(base)
         sigma = []
         for sensor in self.sensors:
             y = base[sensor.truth][0]
-            rate = np.gradient(self.one(sensor, base, 0), at_s)
+            rate = np.gradient(self.sampled(lagged(y, sensor.lag_s)), at_s)
             _, _, noise = sensor.limits(y)
-            blank = 1e6 if sensor.blank else 0.0
-            still = base[sensor.blank][0][np.minimum(at_s.astype(int), y.size - 1)] < 1e-6 if sensor.blank else False
-            sigma.append(np.where(still, blank, 0.0) + np.sqrt(1.25 * noise**2 + sensor.resolution_si() ** 2 / 12 + (rate / ROOT3) ** 2))
+            moment = rate * (at_s[1] - at_s[0]) / 12**0.5
+            still = base[sensor.blank][0][at_s.astype(int)] < 1e-6 if sensor.blank else False
+            sigma.append(np.where(still, 1e6, np.sqrt(1.25 * noise**2 + sensor.resolution_si() ** 2 / 12 + moment**2)))
         self.sigma = np.concatenate(sigma)
         self.g = np.zeros((self.sigma.size, 0))
 
-    def one(self, sensor, channels, k):
-        return np.interp(self.at_s, np.arange(channels[sensor.truth].shape[1]), lagged(channels[sensor.truth][k], sensor.lag_s))
+    def sampled(self, y):
+        return np.interp(self.at_s, np.arange(y.size), y)
 
     def readings(self, channels, k=0):
-        return np.concatenate([self.one(sensor, channels, k) for sensor in self.sensors])
+        return np.concatenate([self.sampled(lagged(channels[s.truth][k], s.lag_s)) for s in self.sensors])
+
+    def noisier(self, signature, noise):
+        """Noise of a measured input, by what one unit of it changes: independent from sample to sample."""
+        before = self.sigma.copy()
+        self.sigma = np.hypot(before, signature * before * noise)
+        self.g *= (before / self.sigma)[:, None]
 
     def of(self, channels, k):
         """Signature of variant k."""
         return (self.readings(channels, k) - self.base) / self.sigma
 
     def of_sensor(self, sensor, make):
-        """Signature of what one compared sensor does: `make` turns its readings (times, values) into others."""
-        out, start = np.zeros(self.sigma.size), 0
+        """Signature of what one compared sensor does: `make` turns what it reads every second into something else."""
+        out = []
         for s in self.sensors:
-            n = self.at_s.size
-            if s is sensor:
-                y = self.base[start : start + n]
-                out[start : start + n] = make(self.at_s, y) - y
-            start += n
-        return out / self.sigma
+            y = lagged(self.channels[s.truth][0], s.lag_s)
+            out.append(self.sampled(make(y)) - self.sampled(y) if s is sensor else np.zeros(self.at_s.size))
+        return np.concatenate(out) / self.sigma
 
     def tolerate(self, signature, sd=1.0):
         self.g = np.column_stack([self.g, sd * signature])
@@ -66,15 +72,11 @@ class Look:
 
 
 def slow(tau):
-    def make(at_s, y):
-        fine = np.arange(at_s[0], at_s[-1] + 1.0)
-        return np.interp(at_s, fine, lagged(np.interp(fine, at_s, y), tau))
-
-    return make
+    return lambda y: lagged(y, tau)
 
 
 def shifted(delta):
-    return lambda at_s, y: np.interp(at_s + delta, at_s, y)
+    return lambda y: np.interp(np.arange(y.size) + delta, np.arange(y.size), y)
 
 
 def stratum(gain):
