@@ -153,22 +153,20 @@ def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
             as_known[key] = x
     if unknown is not None:
         truth |= unknown
-    channels = module.simulate(rig, [truth])
-    clocks = {"logger": rng.uniform(-1, 1), "own": 0.0}
-    clocks["own"] = rig["every_s"] * (within() if edge else 0.5 * within())
+    for s in sensors:
+        draw(s, d.look.channels[s.truth][0], rng, edge)
+        if s.role == "input" and s.truth in module.INPUTS:  # the model sees the inputs as they are measured
+            as_known = module.INPUTS[s.truth](as_known, s.draws["bias"], s.draws["gain"], as_is=True)
+    both = module.simulate(rig, [truth, d.neutral | as_known])
+    channels, oracle = ({name: y[k : k + 1] for name, y in both.items()} for k in (0, 1))
+    clocks = {"logger": rng.uniform(-1, 1), "own": rig["every_s"] * (within() if edge else 0.5 * within())}
     odd = rng.choice([s.column for s in sensors if s.role == "compare"])
     table = {}
     for s in sensors:
-        y = channels[s.truth][0]
-        draw(s, y, rng, edge)
         s.clock = "own" if s.column == odd else "logger"
-        table[s.column] = measure(s, y, d.at_s, rng, clocks[s.clock], by_sensor.get(s.column))
+        table[s.column] = measure(s, channels[s.truth][0], d.at_s, rng, clocks[s.clock], by_sensor.get(s.column))
         if s.blank:
             table[s.column][still(channels[s.blank][0], d.at_s)] = np.nan
-    for s in sensors:  # the model sees the inputs as they are measured
-        if s.role == "input" and s.truth in module.INPUTS:
-            as_known = module.INPUTS[s.truth](as_known, s.draws["bias"], s.draws["gain"], as_is=True)
-    oracle = module.simulate(rig, [d.neutral | as_known])
     spoil(table, d.at_s, rng, plain=spoiler is not None)
     note = spoiler(table, sensors, d.at_s, rng) if spoiler else None
     folder.mkdir(parents=True, exist_ok=True)
@@ -254,6 +252,7 @@ def main():
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("--nulls", type=int, default=COUNTS["null"])
     parser.add_argument("--only-nulls", action="store_true")
+    parser.add_argument("--sensors", choices=["both", "rich", "poor"], default="both", help="both: in turns")
     wanted = parser.parse_args()
     counts = dict(COUNTS, null=wanted.nulls)
     if wanted.only_nulls:
@@ -265,7 +264,7 @@ def main():
         answers = json.loads(file.read_text()) if file.exists() else {}
         if any(name.startswith(f"{tag}-") for name in answers):
             continue
-        d = Draw(module, wanted.seed + k, rich=bool(k % 2 == 0))
+        d = Draw(module, wanted.seed + k, rich=wanted.sensors == "rich" or (wanted.sensors == "both" and k % 2 == 0))
         new = case_set(d, wanted.out, counts, tag)
         answers = json.loads(file.read_text()) if file.exists() else {}
         file.write_text(json.dumps(answers | new, indent=1))

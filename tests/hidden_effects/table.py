@@ -2,6 +2,22 @@
 
 import statistics
 
+METHOD = """`tests/hidden_effects` makes data in which an effect is hidden, and scores what `anergy explain` says about them. It is a program
+of its own (NumPy, Numba, nothing of anergy): 200 finite volumes per pipe with a limiter, a wall and its film, heat capacity, density and
+viscosity of the temperature, friction after Colebrook and White, a step of at most a second. Without effect, tolerance and error of a sensor it
+agrees with `anergy run` within 2 mK where temperatures are steady, 0.2 K at fronts in steps of 5 s and 0.5 % of the pressure losses (`twin.py`).
+
+Always there, also where nothing is hidden: offsets and gains within the class of each sensor (in the middle of it, or at its edge), lengths
+0.5 %, losses 5 %, friction 1 %, heat transfer at the wall 10 %, temperature around 0.5 K and its drift, an uneasy flow, white and 1/f noise, resolution of
+0.1 K and 1 kg/h, a reading every 10 to 30 s (its moment +-1 s), a clock that is off by up to one reading, 2 % missing readings and a gap, now and then
+a column that holds its value. How clearly an effect could be seen is the expected gain of the logarithm of the likelihood beside noise and all tolerances,
+from the truth with and without it: 5 to 15 hard, 15 to 60 medium, above easy. The true class are the effects whose signatures differ from the true one
+by less than 3 nats. R1 is a bench of pipes with a flow meter, R3 two houses that feed in with pumps and one that takes heat; *rich* has
+sensors between the pipes and of pressure losses, *poor* heat meters only. In brackets: 95 % interval after Wilson.
+
+R2 (a house with storage and generators), R4 and R5 have no generator yet; effects that `explain` does not know are not among the single ones.
+"""
+
 
 def wilson(hits, n, z=1.96):
     """95 % interval of a share."""
@@ -66,6 +82,20 @@ def captured(answer, result):
     return statistics.mean((b - a) / (b - f) for b, a, f in gaps) if gaps else None
 
 
+def untouched(answer):
+    """Sensors of which the hidden effect of a single case changes nothing."""
+    effect = answer["effects"][0]
+    id_, place = effect["id"], effect["component"]
+    columns = list(answer["oracle"])
+    if place in columns:
+        return [c for c in columns if c != place]
+    if id_ == "P8" and answer["rig"] == "R1":
+        return [c for c in columns if c != f"dp_{place}"]
+    if id_ in ("P1", "P2", "P3", "P5", "P7"):
+        return [c for c in columns if not c.startswith("T_")]
+    return []
+
+
 def metrics(answers, results):
     """Rows: metric, reached, target."""
     def of(kind, more=lambda a: True):
@@ -75,8 +105,12 @@ def metrics(answers, results):
     seen = {n: a for n, a in known.items() if a["stratum"] in ("medium", "easy")}
     detected = {n: a for n, a in seen.items() if results[n]["verdict"] not in ("nothing", None)}
     truth = {n: (a["effects"][0]["id"], a["effects"][0]["component"]) for n, a in known.items()}
-    classes = {n: [tuple(x) for x in a["class"]] for n, a in known.items()}
-    right = lambda n: n in truth and head(results[n]) in classes[n]  # noqa: E731
+    def right(n):
+        return head(results[n]) in [tuple(x) for x in answers[n]["class"]]
+
+    def three(n):
+        return list(dict.fromkeys([head(results[n])] + pairs_of(results[n].get("tried"))))[:3]
+
     nulls, unknown, data, pairs = of("null"), of("unknown"), of("data"), of("pair")
     answered = {n: a for n, a in seen.items() if named(results[n])}
 
@@ -89,10 +123,8 @@ def metrics(answers, results):
 
     fitted = [x for n in answered if results[n].get("effects") and (x := parameter(n))]
     gaps = [x for n, a in answered.items() if right(n) and (x := captured(a, results[n])) is not None]
-    worse = [(n, c) for n, a in answers.items() if named(results[n]) for c, b in (results[n].get("show_rmse_before") or {}).items()
-             if c in a["oracle"] and b < 1.2 * a["oracle"][c] and results[n]["show_rmse_after"][c] > 1.02 * b]
-    unaffected = [(n, c) for n, a in answers.items() if named(results[n]) for c, b in (results[n].get("show_rmse_before") or {}).items()
-                  if c in a["oracle"] and b < 1.2 * a["oracle"][c]]
+    unaffected = [(n, c) for n, a in known.items() if named(results[n]) for c in untouched(a) if c in results[n]["show_rmse_before"]]
+    worse = [(n, c) for n, c in unaffected if results[n]["show_rmse_after"][c] > 1.02 * results[n]["show_rmse_before"][c]]
     error, brier, n_stated = ece({n: r for n, r in results.items() if n in answers}, right)
     sizes = [len(the_set(results[n])) for n in answered]
     both, one, third = [], [], []
@@ -115,7 +147,7 @@ def metrics(answers, results):
         ("first name in the true class, of all medium and easy", share(right(n) for n in seen), ">= 90 %"),
         ("- of those with a name", share(right(n) for n in answered), ""),
         ("first name exactly right", share(head(results[n]) == truth[n] for n in seen), ">= 80 %"),
-        ("truth among the first three", share(truth[n] in ([head(results[n])] + pairs_of(results[n].get("tried")))[:4] for n in detected), ">= 97 %"),
+        ("truth among the first three", share(truth[n] in three(n) for n in detected), ">= 97 %"),
         ("truth in the set", share(truth[n] in the_set(results[n]) for n in answered), "93 to 98 %"),
         ("mean size of the set", f"{statistics.mean(sizes):.1f}" if sizes else "no case", "<= 2.2"),
         ("component right, rich", share(head(results[n])[1] == truth[n][1] for n, a in answered.items() if a["rich"] and head(results[n])), ">= 90 %"),
@@ -142,7 +174,7 @@ def metrics(answers, results):
 def table(answers, results, note=""):
     """The whole page as Markdown."""
     kinds = {k: sum(a["kind"] == k for a in answers.values()) for k in ("null", "single", "pair", "unknown", "data")}
-    lines = ["# Hidden effects: what `explain` finds", "", note, "",
+    lines = ["# Hidden effects: what `explain` finds", "", METHOD, "## Score", "", note, "",
              f"{len(answers)} cases: " + ", ".join(f"{n} {k}" for k, n in kinds.items()) + ".", ""]
     groups = [("all", lambda a: True)]
     for rig in sorted({a["rig"] for a in answers.values()}):
