@@ -9,6 +9,7 @@ use anergy_simulation::simulation::Simulation;
 use anergy_simulation::steady;
 use anergy_tests::workspace;
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// A pipe of 100 m with a given flow and inlet temperature, 22 mm, R = 2 K m/W, ground 10 degC.
@@ -50,11 +51,33 @@ fn dp_pa(model: &Model) -> f64 {
     steady::solve(model).unwrap().edge("pipe").unwrap().dp_pa
 }
 
+/// An example with a component that the effect can be of.
+fn subject(id: &str) -> (&'static str, &'static str) {
+    match id {
+        "H1" | "H2" => ("two-pipe", "sf1.engine"),
+        "H3" => ("three-houses", "sf1.feed_in_pump"),
+        "H4" => ("three-houses", "sf2.feed_in_check_valve"),
+        "X1" => ("three-houses", "sf1.heat_exchanger"),
+        "G4" | "G6" => ("heat-pumps", "h3.heat_pump"),
+        "G1" | "G2" | "G3" => ("two-pipe", "sf1.chp"),
+        _ if id.starts_with('T') => ("two-pipe", "sf1.storage"),
+        _ => ("three-houses", "sf1-sf2.hot"),
+    }
+}
+
 /// The neutral values of every effect.
 fn neutral(id: &str) -> Value {
     match id {
         "P1" => json!({ "wall_capacity_j_m_k": 0.0, "film_factor": 1.0 }),
         "P7" => json!({ "dispersion_m2_s": 0.0 }),
+        "H1" => json!({ "opening": 0.0 }),
+        "H2" | "H4" => json!({ "share": 0.0 }),
+        "T3" => json!({ "depth_m": 0.0 }),
+        "T4" => json!({ "share": 0.0, "richardson": 1.0 }),
+        "G2" => json!({ "factor_20": 1.0, "factor_40": 1.0, "factor_60": 1.0 }),
+        "G3" => json!({ "time_factor": 1.0, "energy_j": 0.0 }),
+        "G4" => json!({ "heat_w": 0.0 }),
+        "H3" | "T1" | "T2" | "G1" | "G6" | "X1" => json!({ "factor": 1.0 }),
         "P2" | "P5" | "P10" => json!({ "factor": 1.0 }),
         "P3" => json!({ "difference_k": 0.0, "lag_s": 0.0 }),
         "P8" => json!({ "factor": 1.0, "added_roughness_m": 0.0 }),
@@ -64,28 +87,33 @@ fn neutral(id: &str) -> Value {
 
 #[test]
 fn neutral_values_leave_the_model_and_its_run_identical() {
-    let dir = workspace().join("examples/three-houses");
-    let text = std::fs::read_to_string(dir.join("model.toml")).unwrap();
-    let plain = Model::from_toml(&text, &dir).unwrap();
     let end = |model: &Model| {
         let mut simulation = Simulation::new(build(model).unwrap()).unwrap();
         simulation.advance_to(Time::from_s(300.0).unwrap(), Time::from_s(1.0).unwrap()).unwrap();
         simulation.snapshot().to_bytes().unwrap()
     };
-    let before = end(&plain);
+    let mut before: HashMap<&str, (String, Model, Vec<u8>)> = HashMap::new();
     for id in EffectParams::KINDS {
+        let (example, component) = subject(id);
+        let dir = workspace().join("examples").join(example);
+        let (text, plain, end_of_plain) = before.entry(example).or_insert_with(|| {
+            let text = std::fs::read_to_string(dir.join("model.toml")).unwrap();
+            let plain = Model::from_toml(&text, &dir).unwrap();
+            let end_of_plain = end(&plain);
+            (text, plain, end_of_plain)
+        });
         let Value::Object(params) = neutral(id) else { panic!() };
         let fields: String =
             params.iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
         let entry =
-            format!("{text}\n[[effect]]\nid = \"{id}\"\ncomponent = \"sf1-sf2.hot\"\n{fields}");
+            format!("{text}\n[[effect]]\nid = \"{id}\"\ncomponent = \"{component}\"\n{fields}");
         let with = Model::from_toml(&entry, &dir).unwrap();
         assert_eq!(with.effects.len(), 1, "{id}");
         let mut effective = with.with_effects().unwrap().into_owned();
         // The text is what was read, with the entry.
         effective.text.clone_from(&plain.text);
-        assert_eq!(effective, plain, "{id}");
-        assert_eq!(end(&with), before, "{id}");
+        assert_eq!(effective, *plain, "{id}");
+        assert_eq!(end(&with), *end_of_plain, "{id}");
     }
 }
 
@@ -229,4 +257,140 @@ fn effects_survive_the_plain_form_and_are_cut_out_with_their_pipe() {
     assert_eq!(dp_pa(&again).to_bits(), dp_pa(&model).to_bits());
     let part = model.isolate(&["pipe"], &[]).unwrap();
     assert_eq!(part.effects, model.effects);
+}
+
+/// An example with one effect.
+fn example(name: &str, effect: &str) -> Model {
+    let dir = workspace().join("examples").join(name);
+    let text = std::fs::read_to_string(dir.join("model.toml")).unwrap();
+    let text = format!("{text}\n[[effect]]\n{effect}\n");
+    Model::from_toml(&text, &dir).unwrap_or_else(|problems| panic!("{}", problems.render(&text)))
+}
+
+/// Parameters of a component of an example once an effect is at work.
+fn parameters(name: &str, component: &str, effect: &str) -> Value {
+    let model = example(name, &format!("component = \"{component}\"\n{effect}"));
+    let model = model.with_effects().unwrap_or_else(|problems| panic!("{problems}"));
+    let unit = model.units.iter().find(|unit| unit.id == component);
+    let circuit = model.circuits.iter().find(|circuit| circuit.id == component);
+    match (unit, circuit) {
+        (Some(unit), _) => unit.params.to_value(),
+        (_, Some(circuit)) => json!(circuit.branch),
+        _ => model.edge(component).unwrap().params.to_value(),
+    }
+}
+
+#[track_caller]
+fn assert_near(value: &Value, expected: f64) {
+    let value = value.as_f64().unwrap();
+    assert!((value - expected).abs() <= 1e-12 * expected.abs(), "{value} instead of {expected}");
+}
+
+#[test]
+fn effects_of_units_change_what_they_say() {
+    let storage = |effect: &str| parameters("two-pipe", "sf1.storage", effect);
+    // 20 W/K, 0.644 W/(m K), no entrainment in the model.
+    assert_near(&storage("id = \"T1\"\nfactor = 2.5")["ua_w_k"], 50.0);
+    assert_near(&storage("id = \"T2\"\nfactor = 3")["conductivity_w_m_k"], 1.932);
+    assert_near(&storage("id = \"T3\"\ndepth_m = 0.1")["entrainment_m"], 0.1);
+    let jet = storage("id = \"T4\"\nshare = 0.3\nrichardson = 2");
+    assert_near(&jet["jet_share"], 0.3);
+    assert_near(&jet["jet_richardson"], 2.0);
+    let engine = |effect: &str| parameters("two-pipe", "sf1.chp", effect);
+    assert_near(&engine("id = \"G1\"\nfactor = 0.9")["efficiency_factor"], 0.9);
+    let part = engine("id = \"G2\"\nfactor_40 = 0.8");
+    assert_eq!(part["part_load_factor"], json!([1.0, 0.8, 1.0]));
+    // 0.6 MJ in 2400 s of warm-up that falls to nothing are 0.5 kW at its start.
+    let start = engine("id = \"G3\"\ntime_factor = 1.2\nenergy_j = 6e5");
+    assert_near(&start["start_s"], 990.0);
+    assert_near(&start["warm_start_s"], 240.0);
+    assert_near(&start["warm_up_w"], 500.0);
+    let pump = |effect: &str| parameters("heat-pumps", "h3.heat_pump", effect);
+    assert_near(&pump("id = \"G6\"\nfactor = 0.91")["aux_rated_w"], 8190.0);
+    let ice = pump("id = \"G4\"\nheat_kw = 4\nafter_s = 1800");
+    assert_near(&ice["defrost_heat_w"], 4000.0);
+    assert_near(&ice["frost_after_s"], 1800.0);
+    assert_near(&pump("id = \"G3\"\ntime_factor = 2")["start_times_s"][6], 1200.0);
+    let branch = |effect: &str| parameters("two-pipe", "sf1.burner", effect);
+    assert_near(&branch("id = \"H1\"\nopening = 0.3")["idle_opening"], 0.3);
+    assert_near(&branch("id = \"H2\"\nshare = 0.2")["suction"], 0.2);
+    // One that is open is not closed by it.
+    let open = parameters("two-pipe", "sf1.engine", "id = \"H1\"\nopening = 0.3");
+    assert_near(&open["idle_opening"], 1.0);
+}
+
+#[test]
+fn effects_of_elements_change_what_they_say() {
+    let of = |component: &str, effect: &str| parameters("three-houses", component, effect);
+    let head = of("sf1.feed_in_pump", "id = \"H3\"\nfactor = 1")["head_max_pa"].clone();
+    let lower = of("sf1.feed_in_pump", "id = \"H3\"\nfactor = 0.8")["head_max_pa"].clone();
+    assert_near(&lower, 0.8 * head.as_f64().unwrap());
+    let leak = of("sf2.feed_in_check_valve", "id = \"H4\"\nshare = 0.02")["leakage"].clone();
+    let tight = of("sf2.feed_in_check_valve", "id = \"H4\"\nshare = 0")["leakage"].clone();
+    assert_near(&leak, 0.02 + tight.as_f64().unwrap());
+    let clean = of("sf1.heat_exchanger", "id = \"X1\"\nfactor = 1")["ua_w_k"].clone();
+    let fouled = of("sf1.heat_exchanger", "id = \"X1\"\nfactor = 0.6")["ua_w_k"].clone();
+    assert_near(&fouled, 0.6 * clean.as_f64().unwrap());
+}
+
+#[test]
+fn effects_of_a_house_do_what_they_say() {
+    let run = |effect: &str, until_s: f64| {
+        let model = example("two-pipe", effect);
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        let step = Time::from_s(10.0).unwrap();
+        simulation.advance_to(Time::from_s(until_s).unwrap(), step).unwrap();
+        simulation
+    };
+    let get = |simulation: &Simulation, name: &str| {
+        simulation.get(simulation.channel(&format!("sf1.{name}")).unwrap())
+    };
+    let plain = "id = \"P10\"\ncomponent = \"pipe\"\nfactor = 1";
+    let (before, hour_s) = (run(plain, 3600.0), 3600.0);
+    // Fuel goes with 1/eta, heat and electricity stay.
+    let worse = run("id = \"G1\"\ncomponent = \"sf1.chp\"\nfactor = 0.8", hour_s);
+    let fuel = get(&worse, "chp.fuel_j") / get(&before, "chp.fuel_j");
+    assert!((fuel - 1.25).abs() < 1e-9, "{fuel}");
+    assert_eq!(get(&worse, "chp.heat_j").to_bits(), get(&before, "chp.heat_j").to_bits());
+    // Loss in the first ten seconds: UA (T - T_around) with 20 and 60 W/K.
+    let (first, lossy) =
+        (run(plain, 10.0), run("id = \"T1\"\ncomponent = \"sf1.storage\"\nfactor = 3", 10.0));
+    let loss = get(&lossy, "storage.loss_w") / get(&first, "storage.loss_w");
+    assert!((loss - 3.0).abs() < 1e-2, "{loss}");
+    // Nothing closes the boiler, as nothing closes the engine: the storage and the two, with 25 times its resistance, share
+    // what the heating takes as 1 : 1/5 : 1/5.
+    let leaky = example("two-pipe", "id = \"H1\"\ncomponent = \"sf1.burner\"\nopening = 1");
+    let mut leaky = Simulation::new(build(&leaky).unwrap()).unwrap();
+    for unit in ["chp", "boiler"] {
+        let enable = leaky.signal(&format!("sf1.{unit}.enable")).unwrap();
+        leaky.set(enable, 0.0).unwrap();
+    }
+    leaky.advance_to(Time::from_s(3600.0).unwrap(), Time::from_s(10.0).unwrap()).unwrap();
+    let boiler = get(&leaky, "boiler.water.m_flow_kg_s");
+    let storage = get(&leaky, "storage.point_m_flow_kg_s");
+    assert!(storage < 0.0 && (boiler / -storage - 0.2).abs() < 1e-9, "{boiler} {storage}");
+}
+
+#[test]
+fn effects_name_what_they_cannot_be_of() {
+    let refused = |effect: &str| {
+        let model = example("two-pipe", effect);
+        model.with_effects().unwrap_err().to_string()
+    };
+    for (effect, message) in [
+        (
+            "id = \"T1\"\ncomponent = \"sf1.storag\"\nfactor = 2",
+            "there is no storage \"sf1.storag\"",
+        ),
+        ("id = \"T1\"\ncomponent = \"sf1.chp\"\nfactor = 2", "there is no storage \"sf1.chp\""),
+        ("id = \"H1\"\ncomponent = \"sf1.tapping\"\nopening = 1", "circuit between two points"),
+        ("id = \"H1\"\ncomponent = \"sf1.burner\"\nopening = 1.5", "must lie between 0 and 1"),
+        ("id = \"G4\"\ncomponent = \"sf1.chp\"\nheat_w = 1", "there is no air_source_heat_pump"),
+        ("id = \"G3\"\ncomponent = \"sf1.boiler\"\nenergy_j = 1", "is of an engine"),
+        ("id = \"H3\"\ncomponent = \"pipe\"\nfactor = 2", "there is no pump \"pipe\""),
+        ("id = \"X1\"\ncomponent = \"sf1.chp\"\nfactor = 2", "there is no heat_exchanger"),
+    ] {
+        let refused = refused(effect);
+        assert!(refused.contains(message), "{effect}\n{refused}");
+    }
 }

@@ -167,6 +167,11 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "idle_opening",
     "resistance",
     "suction",
+    // Factors over the map of a generator; share and Richardson number of a jet.
+    "efficiency_factor",
+    "part_load_factor",
+    "jet_share",
+    "jet_richardson",
     "carnot_share",
     "cop",
     "cop_max",

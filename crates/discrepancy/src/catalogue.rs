@@ -6,6 +6,7 @@
 
 mod pipes;
 mod sensors;
+mod units;
 
 use crate::experiment::Experiment;
 use crate::unknown::{Target, Unknown};
@@ -20,6 +21,7 @@ struct Group {
 
 const GROUPS: &[Group] = &[
     Group { candidates: pipes::candidates, tolerances: pipes::tolerances },
+    Group { candidates: units::candidates, tolerances: units::tolerances },
     Group { candidates: sensors::candidates, tolerances: sensors::tolerances },
 ];
 

@@ -7,6 +7,7 @@ pub mod circuit;
 pub mod compressor;
 pub mod coupling;
 pub mod direct_exchange;
+mod efficiency_factor;
 pub mod equipment;
 pub mod ground_source;
 pub mod heat_pump;

@@ -6,12 +6,14 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics, did_you_mean};
 use crate::effects::EffectParams;
-use crate::model::{Model, Place};
+use crate::model::{BranchSpec, Model, Place};
 use crate::overlay::{Change, OverlayError};
 use crate::wording::refused;
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pipe::PipeParams;
 use anergy_network::two_port::ElementError;
+use anergy_prosumer::equipment::EquipmentParams;
+use anergy_prosumer::equipment::storage::StorageParams;
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -94,6 +96,53 @@ pub(crate) fn pipe<'a>(model: &'a Model, component: &str) -> Result<&'a PipePara
     }
 }
 
+/// The error that there is no component of that kind.
+pub(crate) fn wanted(wanted: &'static str, component: &str) -> EffectError {
+    EffectError::Component { wanted, component: component.to_owned() }
+}
+
+/// The unit of that name.
+///
+/// # Errors
+/// [`EffectError::Component`] when there is none.
+pub(crate) fn unit<'a>(
+    model: &'a Model,
+    component: &str,
+    kind: &'static str,
+) -> Result<&'a EquipmentParams, EffectError> {
+    let unit = model.units.iter().find(|unit| unit.id == component);
+    unit.map(|unit| &unit.params).ok_or_else(|| wanted(kind, component))
+}
+
+/// The storage of that name.
+///
+/// # Errors
+/// [`EffectError::Component`] when there is none.
+pub(crate) fn storage<'a>(
+    model: &'a Model,
+    component: &str,
+) -> Result<&'a StorageParams, EffectError> {
+    match unit(model, component, "storage")? {
+        EquipmentParams::Storage(storage) => Ok(storage),
+        _ => Err(wanted("storage", component)),
+    }
+}
+
+/// The circuit of that name that is a branch between two points.
+///
+/// # Errors
+/// [`EffectError::Component`] when there is none.
+pub(crate) fn branch<'a>(model: &'a Model, component: &str) -> Result<&'a BranchSpec, EffectError> {
+    let circuit = model.circuits.iter().find(|circuit| circuit.id == component);
+    let branch = circuit.and_then(|circuit| circuit.branch.as_ref());
+    branch.ok_or_else(|| wanted("circuit between two points", component))
+}
+
+/// Whether a component of this kind is an edge.
+fn edge_like(kind: &str) -> bool {
+    ElementParams::KINDS.iter().any(|known| kind.contains(known)) || kind.starts_with("circuit")
+}
+
 impl Model {
     /// The model with its effects at work; the entries themselves are used up.
     ///
@@ -138,7 +187,11 @@ impl Model {
     fn hint(&self, spec: &EffectSpec, error: &EffectError) -> Option<String> {
         let EffectError::Component { wanted, .. } = error else { return None };
         let like = |edge: &&crate::model::EdgeSpec| edge.params.kind() == *wanted;
-        let names = self.edges.iter().filter(like).map(|edge| edge.id.as_str());
+        let edges = self.edges.iter().filter(like).map(|edge| edge.id.as_str());
+        let units = self.units.iter().filter(|_| !edge_like(wanted)).map(|unit| unit.id.as_str());
+        let circuits =
+            self.circuits.iter().filter(|_| wanted.starts_with("circuit")).map(|c| c.id.as_str());
+        let names = edges.chain(units).chain(circuits);
         let kind = self.edge(&spec.component).map(|edge| edge.params.kind());
         did_you_mean(&spec.component, names).or_else(|| {
             kind.map(|kind| {

@@ -1,10 +1,24 @@
 //! REGISTRY of the effects: adding one is one file, its `mod` line and its line below.
 
+mod auxiliary;
+mod dead_volume;
+mod defrosting;
 mod dispersion;
+mod efficiency;
+mod fouling;
 mod friction;
+mod inlet_jet;
 mod insulation;
+mod leak;
 mod length;
+mod parasitic_flow;
+mod part_load;
+mod pump_head;
 mod standstill;
+mod start;
+mod storage_conductivity;
+mod storage_loss;
+mod suction;
 mod surroundings;
 mod wall;
 
@@ -20,5 +34,19 @@ anergy_core::registry! {
         Dispersion("P7", dispersion::Dispersion, dispersion::Dispersion),
         Friction("P8", friction::Friction, friction::Friction),
         Length("P10", length::Length, length::Length),
+        ParasiticFlow("H1", parasitic_flow::ParasiticFlow, parasitic_flow::ParasiticFlow),
+        Suction("H2", suction::Suction, suction::Suction),
+        PumpHead("H3", pump_head::PumpHead, pump_head::PumpHead),
+        Leak("H4", leak::Leak, leak::Leak),
+        StorageLoss("T1", storage_loss::StorageLoss, storage_loss::StorageLoss),
+        StorageConductivity("T2", storage_conductivity::StorageConductivity, storage_conductivity::StorageConductivity),
+        DeadVolume("T3", dead_volume::DeadVolume, dead_volume::DeadVolume),
+        InletJet("T4", inlet_jet::InletJet, inlet_jet::InletJet),
+        EfficiencyLevel("G1", efficiency::EfficiencyLevel, efficiency::EfficiencyLevel),
+        PartLoad("G2", part_load::PartLoad, part_load::PartLoad),
+        Start("G3", start::Start, start::Start),
+        Defrosting("G4", defrosting::Defrosting, defrosting::Defrosting),
+        Auxiliary("G6", auxiliary::Auxiliary, auxiliary::Auxiliary),
+        Fouling("X1", fouling::Fouling, fouling::Fouling),
     }
 }

@@ -153,7 +153,11 @@ impl Model {
         model.circuits.retain(|circuit| {
             kept_units.iter().any(|unit| circuit.through.iter().any(|member| of(member, unit)))
         });
-        model.effects.retain(|effect| kept_edge(&effect.component));
+        let kept_circuit = |id: &str| model.circuits.iter().any(|circuit| circuit.id == id);
+        model.effects.retain(|effect| {
+            let component = effect.component.as_str();
+            kept_edge(component) || kept_units.contains(component) || kept_circuit(component)
+        });
         model.interfaces.retain(|interface| {
             kept_edge(&interface.entry.edge)
                 && interface.entry.pump.as_deref().is_none_or(kept_edge)

@@ -24,8 +24,9 @@
 pub mod params;
 
 use crate::compressor::{Command, Compressor, CompressorState, Means};
+use crate::efficiency_factor::EfficiencyFactor;
 use crate::heat_pump::{AuxHeater, Limits};
-use crate::performance_map::{PerformanceMap, Sides, Stream};
+use crate::performance_map::{Performance, PerformanceMap, Sides, Stream};
 use crate::thermal_unit::{Exchange, ThermalUnit, UnitInput, UnitOutput, UnitPort, capacity_w_k};
 use anergy_core::medium::{Medium, ZERO_CELSIUS_K};
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
@@ -64,6 +65,7 @@ pub struct AirSourceHeatPump {
     limits: Limits,
     frost: DefrostRule,
     aux: AuxHeater,
+    factor: EfficiencyFactor,
     idle_w: f64,
     heat_share: f64,
     content_kg: f64,
@@ -142,7 +144,8 @@ impl AirSourceHeatPump {
                 (Some(map), true) => map,
                 _ => &self.heating,
             };
-            map.settled(&sides(cooling), modulation).0.scaled(self.size)
+            let map = map.settled(&sides(cooling), modulation).0.scaled(self.size);
+            Performance { electric_w: map.electric_w / self.factor.at(modulation), ..map }
         };
         let means = self.compressor.run(state[STEP_S], &command, &mut next, steady);
         let capacity_w_k = match self.water {

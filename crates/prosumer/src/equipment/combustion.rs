@@ -23,7 +23,8 @@ mod flow;
 pub mod map;
 pub mod stirling;
 
-use crate::burner::{Burner, BurnerState, Command, Means};
+use crate::burner::{Burner, BurnerState, Command, Means, Steady};
+use crate::efficiency_factor::EfficiencyFactor;
 use crate::thermal_unit::{
     Exchange, Flag, ThermalUnit, UnitInput, UnitOutput, UnitPort, capacity_w_k,
 };
@@ -64,6 +65,8 @@ pub struct Combustion {
     limits: Limits,
     /// The content of an engine, where it has one.
     engine: Option<EngineContent>,
+    /// How much better it is than its map.
+    factor: EfficiencyFactor,
     /// Electricity while nothing burns, and while something does, W.
     idle_w: f64,
     running_w: f64,
@@ -128,7 +131,10 @@ impl Combustion {
             let mut next = BurnerState::read(&state[at..]);
             let modulation = if enabled { modulation } else { 0.0 };
             let command = Command { modulation, tripped };
-            let steady = |modulation| stage.map.at(modulation, return_k);
+            let steady = |modulation| {
+                let map = stage.map.at(modulation, return_k);
+                Steady { fuel_w: map.fuel_w / self.factor.at(modulation), ..map }
+            };
             let means = stage.burner.run(state[STEP_S], &command, &mut next, steady);
             (means, next)
         };
@@ -307,13 +313,10 @@ impl ThermalUnit for Combustion {
         let plan = self.plan(signals, state);
         let PortFlow { m_flow_kg_s, t_in_k, t_out_k } = ports[0];
         let q_w = capacity_w_k(&self.medium, m_flow_kg_s) * (t_out_k - t_in_k);
-        // What the water took of what was planned.
+        // What the water took of what was planned; a content takes it all.
         let planned_w = plan.heat_w();
-        let share = match planned_w {
-            // A content takes it all.
-            0.0.. if planned_w > 0.0 && self.engine.is_none() => (q_w / planned_w).clamp(0.0, 1.0),
-            _ => 1.0,
-        };
+        let partly = planned_w > 0.0 && self.engine.is_none();
+        let share = if partly { (q_w / planned_w).clamp(0.0, 1.0) } else { 1.0 };
         let on = plan.main.on.max(plan.aux.on);
         let own_w = self.idle_w * (1.0 - on) + self.running_w * on;
         let rod_w = share * plan.rod_w;

@@ -5,8 +5,8 @@
 //! 2 T_l + T_(l-1)) - UA_l (T_l - T_amb) + Q_coil,l + Q_rod,l`; see `layers` (geometry), `ports` (flows), `mixed_layers` and `plug_flow` (advection),
 //! `exchange` (conduction, loss, buoyancy), `coil`, `rod`, `tank` (a step of all of it).
 //!
-//! **Assumptions** water of the same height has the same temperature; no mixing by momentum of what enters
-//! (water of the wrong density mixes by buoyancy); the wall holds no heat of its own. **Validity** measured
+//! **Assumptions** water of the same height has the same temperature; what enters mixes by its momentum only where a
+//! `jet` is given (water of the wrong density mixes by buoyancy); the wall holds no heat of its own. **Validity** measured
 //! for a storage of 785 l with ten layers; a step that moves less than the tank. **Numerics** parts of a
 //! step by the flow through a layer; heat exact for any step.
 //!
@@ -19,6 +19,7 @@
 mod build;
 mod coil;
 mod exchange;
+mod jet;
 mod layers;
 mod mixed_layers;
 mod plug_flow;
@@ -28,6 +29,7 @@ mod rod;
 mod tank;
 mod unit;
 
+pub use build::U_W_M2_K;
 pub use coil::StorageCoil;
 pub use layers::MAX_LAYERS;
 pub use ports::{MAX_PORTS, StorageConnection, StoragePort};
@@ -86,6 +88,15 @@ pub struct StorageParams {
     /// How far below and above a port water is drawn along with what leaves, m.
     #[serde(default)]
     pub entrainment_m: f64,
+    /// Share of the water that enters which mixes with the neighbouring layers where it has no buoyancy; 0 for none.
+    #[serde(default)]
+    pub jet_share: f64,
+    /// Richardson number of the jet at which half of that is left.
+    #[serde(default = "default_jet_richardson")]
+    pub jet_richardson: f64,
+    /// Inner diameter of the ports, m: it gives the velocity of the jet.
+    #[serde(default = "default_port_diameter")]
+    pub port_diameter_m: f64,
     /// Temperature at which the state of charge is 0, K.
     #[serde(default = "default_empty")]
     pub soc_empty_k: f64,
@@ -125,6 +136,14 @@ fn default_buoyancy() -> f64 {
     900.0
 }
 
+fn default_jet_richardson() -> f64 {
+    1.0
+}
+
+fn default_port_diameter() -> f64 {
+    0.025
+}
+
 fn default_empty() -> f64 {
     303.15
 }
@@ -154,6 +173,9 @@ impl Default for StorageParams {
             buoyancy: Buoyancy::default(),
             buoyancy_w_k: default_buoyancy(),
             entrainment_m: 0.0,
+            jet_share: 0.0,
+            jet_richardson: default_jet_richardson(),
+            port_diameter_m: default_port_diameter(),
             soc_empty_k: default_empty(),
             soc_full_k: default_full(),
             initial_k: None,

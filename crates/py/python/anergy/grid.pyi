@@ -102,7 +102,7 @@ class _HeatExchanger(TypedDict, total=False):
     volume_m3: float
     volume_l: float
     wall_capacity_j_k: float
-    wall_capacity_j_degc: float
+    wall_capacity_kj_k: float
     delta_m: float
     delta_mm: float
     delta_cm: float
@@ -2319,7 +2319,7 @@ class _Edge:
         volume_m3: float | None = None,
         volume_l: float | None = None,
         wall_capacity_j_k: float | None = None,
-        wall_capacity_j_degc: float | None = None,
+        wall_capacity_kj_k: float | None = None,
         delta_m: float | None = None,
         delta_mm: float | None = None,
         delta_cm: float | None = None,
@@ -2358,7 +2358,7 @@ class _Edge:
             Mixed water volume of each side, m3. Default: 0.003. Also volume_l.
         wall_capacity_j_k
             Heat capacity of the metal between the two sides, J/K: each side carries half of it. Absent: none.
-            Default: 0.0. Also wall_capacity_j_degc.
+            Default: 0.0. Also wall_capacity_kj_k.
         delta_m
             Regularised below this share of the nominal flow. Default: 0.3. Also delta_mm, delta_cm, delta_km.
         partner
@@ -2721,6 +2721,8 @@ class _Unit:
         idle_w: float | None = None,
         idle_kw: float | None = None,
         idle_mw: float | None = None,
+        efficiency_factor: float | None = None,
+        part_load_factor: Sequence[float] | None = None,
         heat_share: float | None = None,
         content_m3: float | None = None,
         content_l: float | None = None,
@@ -2859,6 +2861,10 @@ class _Unit:
             Steps of the electric heater; 0 for any power. Default: 3.
         idle_w
             Electricity while the unit is off, W. Default: 15.0. Also idle_kw, idle_mw.
+        efficiency_factor
+            COP and EER over what the map says, at all loads. Default: 1.0.
+        part_load_factor
+            The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
         heat_share
             Share of the electricity of the compressor that becomes heat of the refrigerant; the rest warms the
             room. Default: 0.95.
@@ -3733,6 +3739,8 @@ class _Unit:
         stop_times_h: Sequence[float] | None = None,
         stop_times_d: Sequence[float] | None = None,
         stop_heat: Sequence[float] | None = None,
+        efficiency_factor: float | None = None,
+        part_load_factor: Sequence[float] | None = None,
         idle_w: float | None = None,
         idle_kw: float | None = None,
         idle_mw: float | None = None,
@@ -3820,6 +3828,10 @@ class _Unit:
         stop_heat
             Stop: heat at these times as a share of that before; the flow goes on until the last one. Default:
             [1.0, 1.0, 0.97, 0.79, 0.47, 0.34, 0.17, 0.1, 0.05, 0.0].
+        efficiency_factor
+            Efficiency over what the map says, at all loads. Default: 1.0.
+        part_load_factor
+            The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
         idle_w
             Electricity of control, fan and pump, W. Default: 35.0. Also idle_kw, idle_mw.
         dynamics
@@ -3893,9 +3905,23 @@ class _Unit:
         warm_up_min: float | None = None,
         warm_up_h: float | None = None,
         warm_up_d: float | None = None,
+        efficiency_factor: float | None = None,
+        part_load_factor: Sequence[float] | None = None,
         idle_w: float | None = None,
         idle_kw: float | None = None,
         idle_mw: float | None = None,
+        content_j_k: float | None = None,
+        content_kj_k: float | None = None,
+        content_loss_w_k: float | None = None,
+        content_loss_kw_k: float | None = None,
+        ambient_k: float | None = None,
+        ambient_degc: float | None = None,
+        pump_on_k: float | None = None,
+        pump_on_degc: float | None = None,
+        pump_off_k: float | None = None,
+        pump_off_degc: float | None = None,
+        initial_content_k: float | None = None,
+        initial_content_degc: float | None = None,
         dynamics: bool | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "chp".
@@ -3972,8 +3998,26 @@ class _Unit:
             `warm_up_s`. Default: 1000.0. Also warm_up_kw, warm_up_mw.
         warm_up_s
             Time in which the engine warms up, s. Default: 2400.0. Also warm_up_min, warm_up_h, warm_up_d.
+        efficiency_factor
+            Efficiency over what the map says, at all loads. Default: 1.0.
+        part_load_factor
+            The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
         idle_w
             Electricity while the unit is off, W. Default: 35.0. Also idle_kw, idle_mw.
+        content_j_k
+            Heat capacity of the engine with its water, J/K: 60 kJ/K; 0 (default) for the measured start
+            without a content. Default: 0.0. Also content_kj_k.
+        content_loss_w_k
+            Heat of that content to its surroundings, W/K. Default: 5.0. Also content_loss_kw_k.
+        ambient_k
+            Temperature around the engine, K. Default: 291.15. Also ambient_degc.
+        pump_on_k
+            The pump starts where the content is hotter, K. Default: 355.15. Also pump_on_degc.
+        pump_off_k
+            The pump stops where the content is colder, K. Default: 348.15. Also pump_off_degc.
+        initial_content_k
+            Temperature of the content at the start of the run, K; that of the run without it. Also
+            initial_content_degc.
         dynamics
             false: the steady map at once, without start, warm-up, stop, load changes and least times. Default:
             True.
@@ -4028,6 +4072,8 @@ class _Unit:
         off_min_min: float | None = None,
         off_min_h: float | None = None,
         off_min_d: float | None = None,
+        efficiency_factor: float | None = None,
+        part_load_factor: Sequence[float] | None = None,
         idle_w: float | None = None,
         idle_kw: float | None = None,
         idle_mw: float | None = None,
@@ -4095,6 +4141,10 @@ class _Unit:
         off_min_s
             Smallest time between a stop and the next start of the engine, s. Default: 0.0. Also off_min_min,
             off_min_h, off_min_d.
+        efficiency_factor
+            Efficiency over what the map says, at all loads. Default: 1.0.
+        part_load_factor
+            The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
         idle_w
             Electricity while the unit is off, W. Default: 35.0. Also idle_kw, idle_mw.
         dynamics
@@ -4886,7 +4936,7 @@ class _Unit:
         nominal_room_degc: float | None = None,
         emitter_exponent: float | None = None,
         emitter_capacity_j_k: float | None = None,
-        emitter_capacity_j_degc: float | None = None,
+        emitter_capacity_kj_k: float | None = None,
         heating: bool | None = None,
         cooling: bool | None = None,
         cooling_w_m2_k: float | None = None,
@@ -5020,7 +5070,7 @@ class _Unit:
         emitter_exponent
             Exponent of the emitter; default by the emitter.
         emitter_capacity_j_k
-            Heat capacity of the emitter, J/K; default by the emitter. Also emitter_capacity_j_degc.
+            Heat capacity of the emitter, J/K; default by the emitter. Also emitter_capacity_kj_k.
         heating
             Whether it has the port `heating`. Default: True.
         cooling
@@ -5102,6 +5152,12 @@ class _Unit:
         entrainment_mm: float | None = None,
         entrainment_cm: float | None = None,
         entrainment_km: float | None = None,
+        jet_share: float | None = None,
+        jet_richardson: float | None = None,
+        port_diameter_m: float | None = None,
+        port_diameter_mm: float | None = None,
+        port_diameter_cm: float | None = None,
+        port_diameter_km: float | None = None,
         soc_empty_k: float | None = None,
         soc_empty_degc: float | None = None,
         soc_full_k: float | None = None,
@@ -5168,6 +5224,14 @@ class _Unit:
         entrainment_m
             How far below and above a port water is drawn along with what leaves, m. Default: 0.0. Also
             entrainment_mm, entrainment_cm, entrainment_km.
+        jet_share
+            Share of the water that enters which mixes with the neighbouring layers where it has no buoyancy; 0
+            for none. Default: 0.0.
+        jet_richardson
+            Richardson number of the jet at which half of that is left. Default: 1.0.
+        port_diameter_m
+            Inner diameter of the ports, m: it gives the velocity of the jet. Default: 0.025. Also
+            port_diameter_mm, port_diameter_cm, port_diameter_km.
         soc_empty_k
             Temperature at which the state of charge is 0, K. Default: 303.15. Also soc_empty_degc.
         soc_full_k
@@ -6206,6 +6270,364 @@ class _Effect:
             Interval of the value; changes nothing
         factor
             Length over the plan's; 1 changes nothing.
+        """
+    def h1(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        opening: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "H1".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        opening
+            Conductance of the branch while its pump is off, as a share of that in operation; 0 changes
+            nothing.
+        """
+    def h2(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        share: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "H2".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        share
+            Share of what the strongest parallel pump delivers more that this one draws with it; 0 changes
+            nothing.
+        """
+    def h3(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "H3".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor
+            Head over the curve of the pump; 1 changes nothing.
+        """
+    def h4(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        share: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "H4".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        share
+            What the closed valve lets through more, as a share of the open one; 0 changes nothing.
+        """
+    def t1(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "T1".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor
+            Heat loss over what the data of the storage say; 1 changes nothing.
+        """
+    def t2(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "T2".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor
+            Vertical conductivity over what the data of the storage say; 1 changes nothing.
+        """
+    def t3(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        depth_m: float | None = None,
+        depth_mm: float | None = None,
+        depth_cm: float | None = None,
+        depth_km: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "T3".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        depth_m
+            How much further below and above a port water is drawn along, m; 0 changes nothing. Also depth_mm,
+            depth_cm, depth_km.
+        """
+    def t4(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        share: float | None = None,
+        richardson: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "T4".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        share
+            Share of the water that enters which mixes with each neighbouring layer; 0 changes nothing.
+        richardson
+            Richardson number at which half of that is left. Default: 1.0.
+        """
+    def g1(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "G1".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor
+            Efficiency, or COP, over what the data of the generator say; 1 changes nothing.
+        """
+    def g2(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor_20: float | None = None,
+        factor_40: float | None = None,
+        factor_60: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "G2".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor_20
+            Efficiency, or COP, over what the data say at 20 % of the load; 1 changes nothing. Default: 1.0.
+        factor_40
+            The same at 40 %. Default: 1.0.
+        factor_60
+            The same at 60 %. Default: 1.0.
+        """
+    def g3(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        time_factor: float | None = None,
+        energy_j: float | None = None,
+        energy_kwh: float | None = None,
+        energy_mwh: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "G3".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        time_factor
+            Length of a start over what the data say; 1 changes nothing. Default: 1.0.
+        energy_j
+            Heat that a cold engine takes for itself besides, J; 0 changes nothing. Default: 0.0. Also
+            energy_kwh, energy_mwh.
+        """
+    def g4(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        heat_w: float | None = None,
+        heat_kw: float | None = None,
+        heat_mw: float | None = None,
+        after_s: float | None = None,
+        after_min: float | None = None,
+        after_h: float | None = None,
+        after_d: float | None = None,
+        duration_s: float | None = None,
+        duration_min: float | None = None,
+        duration_h: float | None = None,
+        duration_d: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "G4".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        heat_w
+            Heat taken from the water in a defrost at full speed, W; 0 changes nothing. Also heat_kw, heat_mw.
+        after_s
+            Operation in cold air until a defrost, s; that of the unit without it. Also after_min, after_h,
+            after_d.
+        duration_s
+            Duration of a defrost, s; that of the unit without it. Also duration_min, duration_h, duration_d.
+        """
+    def g6(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "G6".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor
+            Power over its rating; 1 changes nothing.
+        """
+    def x1(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        factor: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "X1".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        factor
+            Conductance over what the data of the exchanger say; 1 changes nothing.
         """
 
 class Grid:
@@ -7285,6 +7707,13 @@ class Grid:
         v_flow_l_min: float | None = None,
         v_flow_l_h: float | None = None,
         v_flow_m3_h: float | None = None,
+        from_: str | None = None,
+        to: str | None = None,
+        resistance: float | None = None,
+        idle_opening: float | None = None,
+        suction: float | None = None,
+        throttled: bool | None = None,
+        check_valve: bool | None = None,
     ) -> str:
         """Adds `[[circuit]]`.
 
@@ -7301,6 +7730,25 @@ class Grid:
         v_flow_m3_s
             Flow of its own pump while nothing drives it, m3/s. Absent: one of its units sets the flow. Also
             v_flow_l_s, v_flow_l_min, v_flow_l_h, v_flow_m3_h.
+        from_
+            Point at which its water comes from others, for a circuit that is a branch between two points:
+            `from = "return"`.
+        to
+            Point at which its water goes to others.
+        resistance
+            Of a branch: pressure loss over the square of the flow; only ratios count. 25 with a pump, 1
+            without.
+        idle_opening
+            Of a branch with a pump: how far it is open while its pump is off, 0 (automatic valve, default) to
+            1 (none).
+        suction
+            Of a branch with a pump: share of what the strongest parallel pump delivers more that it draws with
+            it; 0.
+        throttled
+            Of a branch with a pump: whether it holds its flow also where others push more through it; true.
+        check_valve
+            Of a branch with a pump: whether a check valve keeps water from flowing back while the pump is off;
+            false.
         """
     def sensor(
         self,

@@ -2,6 +2,7 @@
 
 use super::{AirSourceHeatPump, DefrostRule};
 use crate::compressor::{Compressor, Defrost};
+use crate::efficiency_factor::EfficiencyFactor;
 use crate::equipment::liquid;
 use crate::heat_pump::{AuxHeater, FlowControl, Limits, map_of, start_table};
 use crate::performance_map::params::MapChoice;
@@ -123,6 +124,11 @@ pub struct AirSourceHeatPumpParams {
     pub aux_steps: u8,
     /// Electricity while the unit is off, W.
     pub idle_w: f64,
+    /// COP and EER over what the map says, at all loads.
+    pub efficiency_factor: f64,
+    /// The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub part_load_factor: Vec<f64>,
     /// Share of the electricity of the compressor that becomes heat of the refrigerant; the rest warms the room.
     pub heat_share: f64,
     /// Water in the unit and its pipes, mixed with what leaves, m3; 0 for none.
@@ -180,6 +186,8 @@ impl Default for AirSourceHeatPumpParams {
             defrost_recovery_s: 120.0,
             aux_rated_w: 9000.0,
             aux_steps: 3,
+            efficiency_factor: 1.0,
+            part_load_factor: Vec::new(),
             idle_w: 15.0,
             heat_share: 0.95,
             content_m3: 0.004,
@@ -300,6 +308,7 @@ impl AirSourceHeatPumpParams {
             },
             frost: DefrostRule { below_k: self.frost_below_k },
             aux: AuxHeater { rated_w: self.aux_rated_w, steps: self.aux_steps },
+            factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,
             heat_share: self.heat_share,
             content_kg: if self.dynamics { self.content_m3 * medium.density_kg_m3 } else { 0.0 },

@@ -4,6 +4,7 @@ use super::flow::flow_rule;
 use super::map::{BoilerTable, SteadyMap};
 use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
+use crate::efficiency_factor::EfficiencyFactor;
 use crate::equipment::liquid;
 use crate::heat_pump::rows_over_time;
 use crate::thermal_unit::{UnitError, not_negative, positive, share};
@@ -72,6 +73,11 @@ pub struct CondensingBoilerParams {
     pub stop_times_s: Vec<f64>,
     /// Stop: heat at these times as a share of that before; the flow goes on until the last one.
     pub stop_heat: Vec<f64>,
+    /// Efficiency over what the map says, at all loads.
+    pub efficiency_factor: f64,
+    /// The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub part_load_factor: Vec<f64>,
     /// Electricity of control, fan and pump, W.
     pub idle_w: f64,
     /// false: the steady map at once, without start, stop, load changes and least times.
@@ -115,6 +121,8 @@ impl Default for CondensingBoilerParams {
             ],
             stop_times_s: vec![0.0, 2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 70.0],
             stop_heat: vec![1.0, 1.0, 0.97, 0.79, 0.47, 0.34, 0.17, 0.10, 0.05, 0.0],
+            efficiency_factor: 1.0,
+            part_load_factor: Vec::new(),
             idle_w: 35.0,
             dynamics: true,
         }
@@ -232,6 +240,7 @@ impl CondensingBoilerParams {
                 restart_k: self.restart_difference_k,
             },
             engine: None,
+            factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,
             running_w: self.idle_w,
             size: if table { 1.0 } else { self.nominal_w / MEASURED_W },

@@ -5,6 +5,7 @@ use super::flow::flow_rule;
 use super::map::SteadyMap;
 use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
+use crate::efficiency_factor::EfficiencyFactor;
 use crate::equipment::liquid;
 use crate::thermal_unit::{UnitError, not_negative, positive, share};
 use anergy_core::medium::Medium;
@@ -143,6 +144,11 @@ pub struct ChpParams {
     pub warm_up_w: f64,
     /// Time in which the engine warms up, s.
     pub warm_up_s: f64,
+    /// Efficiency over what the map says, at all loads.
+    pub efficiency_factor: f64,
+    /// The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub part_load_factor: Vec<f64>,
     /// Electricity while the unit is off, W.
     pub idle_w: f64,
     /// Heat capacity of the engine with its water, J/K: 60 kJ/K; 0 (default) for the measured start without a content.
@@ -189,6 +195,8 @@ impl Default for ChpParams {
             cold_after_s: 36_000.0,
             warm_up_w: 1000.0,
             warm_up_s: 2400.0,
+            efficiency_factor: 1.0,
+            part_load_factor: Vec::new(),
             idle_w: 35.0,
             content_j_k: 0.0,
             content_loss_w_k: 5.0,
@@ -301,6 +309,7 @@ impl ChpParams {
                 restart_k: self.restart_difference_k,
             },
             engine,
+            factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,
             running_w: 0.0,
             size,
@@ -313,6 +322,11 @@ impl ChpParams {
             ],
             medium: *medium,
         })
+    }
+
+    /// Its size over that of the measured engine.
+    pub fn size_of_measured(&self) -> f64 {
+        self.electric_max_w.unwrap_or(self.size.ratings().0) / MEASURED_W
     }
 
     /// The content, where there is one.

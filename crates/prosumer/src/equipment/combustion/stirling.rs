@@ -5,6 +5,7 @@ use super::flow::flow_rule;
 use super::map::SteadyMap;
 use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
+use crate::efficiency_factor::EfficiencyFactor;
 use crate::equipment::liquid;
 use crate::thermal_unit::{UnitError, not_negative, positive, share};
 use anergy_core::medium::Medium;
@@ -65,6 +66,11 @@ pub struct StirlingChpParams {
     pub run_min_s: f64,
     /// Smallest time between a stop and the next start of the engine, s.
     pub off_min_s: f64,
+    /// Efficiency over what the map says, at all loads.
+    pub efficiency_factor: f64,
+    /// The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub part_load_factor: Vec<f64>,
     /// Electricity while the unit is off, W.
     pub idle_w: f64,
     /// false: the steady maps at once, without start, stop and least times.
@@ -93,6 +99,8 @@ impl Default for StirlingChpParams {
             restart_difference_k: 5.0,
             run_min_s: 0.0,
             off_min_s: 0.0,
+            efficiency_factor: 1.0,
+            part_load_factor: Vec::new(),
             idle_w: 35.0,
             dynamics: true,
         }
@@ -178,6 +186,7 @@ impl StirlingChpParams {
                 restart_k: self.restart_difference_k,
             },
             engine: None,
+            factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,
             running_w: 0.0,
             size: self.electric_max_w / 1000.0,

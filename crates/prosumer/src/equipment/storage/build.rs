@@ -1,10 +1,11 @@
 //! From the parameters of a model file to a storage that runs; what cannot be is refused.
 
 use super::coil::Coil;
+use super::jet::Jet;
 use super::layers::{Layers, MAX_LAYERS};
 use super::ports::{MAX_PORTS, Openings, refused};
 use super::rod::Rod;
-use super::tank::Tank;
+use super::tank::{Scheme, Tank};
 use super::unit::{Initial, Storage};
 use super::{StorageCoil, StorageParams, StorageRod};
 use crate::equipment::liquid;
@@ -12,7 +13,7 @@ use crate::thermal_unit::UnitError;
 use anergy_core::medium::Medium;
 
 /// Loss of a storage of which nothing is said, W/(m2 K).
-const U_W_M2_K: f64 = 0.35;
+pub const U_W_M2_K: f64 = 0.35;
 
 fn fields<T>(problem: String) -> Result<T, UnitError> {
     Err(UnitError::Fields { problem })
@@ -120,6 +121,7 @@ impl StorageParams {
             coils,
             rod,
             conductivity_w_m_k: not_negative("conductivity_w_m_k", self.conductivity_w_m_k)?,
+            jet: self.jet(&layers)?,
             buoyancy: self.buoyancy,
             buoyancy_w_k: not_negative("buoyancy_w_k", self.buoyancy_w_k)?,
             layers,
@@ -127,6 +129,23 @@ impl StorageParams {
         let initial = self.initial(&tank.layers, medium)?;
         positive("ambient_k", self.ambient_k)?;
         Ok(Storage::new(self, tank, initial))
+    }
+
+    /// The jets, where they mix.
+    fn jet(&self, layers: &Layers) -> Result<Option<Jet>, UnitError> {
+        not_negative("jet_share", self.jet_share)?;
+        let jet = Jet {
+            share: self.jet_share,
+            richardson: positive("jet_richardson", self.jet_richardson)?,
+            diameter_m: positive("port_diameter_m", self.port_diameter_m)?,
+            density_kg_m3: layers.density_kg_m3,
+            heat_capacity_j_kg_k: layers.heat_capacity_j_kg_k,
+        };
+        if self.jet_share > 0.0 && self.scheme != Scheme::MixedLayers {
+            let problem = "jet_share: needs scheme = \"mixed_layers\"".to_owned();
+            return within("jet_share", problem);
+        }
+        Ok((self.jet_share > 0.0).then_some(jet))
     }
 
     /// Conductance of each layer to the surroundings, W/K.

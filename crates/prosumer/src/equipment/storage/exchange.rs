@@ -32,6 +32,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) conduction_w_kg_k: f64,
     /// The same of buoyancy.
     pub(super) buoyancy_w_kg_k: f64,
+    /// More conductance between each cell and the one above, W/K; nothing where it is empty.
+    pub(super) jets_w_k: &'a [f64],
 }
 
 /// Conduction, loss and buoyancy over a part of a step; returns the heat lost, J.
@@ -71,7 +73,9 @@ fn solve<const N: usize>(
     for i in 0..n {
         let g_above = if i + 1 < n {
             let rises = if inverted[i] { around.buoyancy_w_kg_k } else { 0.0 };
+            let jet_w_k = around.jets_w_k.get(i).copied().unwrap_or(0.0);
             2.0 * (around.conduction_w_kg_k + rises) / (cells.mass_kg[i] + cells.mass_kg[i + 1])
+                + jet_w_k
         } else {
             0.0
         };
@@ -143,6 +147,7 @@ mod tests {
                 ua_w_k: &[2.0],
                 conduction_w_kg_k: 0.0,
                 buoyancy_w_kg_k: 0.0,
+                jets_w_k: &[],
             };
             lost += exchange(&mut cells, &around);
         }
@@ -167,6 +172,7 @@ mod tests {
                     ua_w_k: &ua_w_k,
                     conduction_w_kg_k: g,
                     buoyancy_w_kg_k: 0.0,
+                    jets_w_k: &[],
                 };
                 exchange(&mut cells, &around);
             }
@@ -187,6 +193,7 @@ mod tests {
             ua_w_k: &[0.0; 128],
             conduction_w_kg_k: 0.0,
             buoyancy_w_kg_k,
+            jets_w_k: &[],
         };
         assert_eq!(exchange(cells, &around), 0.0);
     }

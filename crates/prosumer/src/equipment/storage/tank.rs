@@ -14,6 +14,7 @@
 
 use super::coil::{Coil, Line};
 use super::exchange::{Surroundings, exchange, overturn};
+use super::jet::Jet;
 use super::layers::{Cells, Layers};
 use super::mixed_layers::advect;
 use super::plug_flow::{displace, merge};
@@ -96,6 +97,7 @@ pub(super) struct Tank {
     /// Conductance to the surroundings of each layer, W/K.
     pub(super) ua_w_k: Vec<f64>,
     pub(super) conductivity_w_m_k: f64,
+    pub(super) jet: Option<Jet>,
     pub(super) buoyancy: Buoyancy,
     pub(super) buoyancy_w_k: f64,
 }
@@ -190,6 +192,10 @@ impl Tank {
                 passed.rod_j += rod.heat(&mut water.cells, share, wanted, self.cp(), dt_s, blocked);
             }
             let section = self.layers.cross_section_m2();
+            let jets = self.jet.map(|jet| {
+                let streams = &with.streams[..self.ports];
+                jet.conductances_w_k(&self.openings, streams, with.positions, &water.cells)
+            });
             let around = Surroundings {
                 dt_s,
                 heat_capacity_j_kg_k: self.cp(),
@@ -200,6 +206,7 @@ impl Tank {
                     * section
                     * section
                     * self.layers.density_kg_m3,
+                jets_w_k: jets.as_ref().map_or(&[], |jets| &jets[..]),
                 buoyancy_w_kg_k: match self.buoyancy {
                     Buoyancy::Gradual => self.buoyancy_w_k * self.layers.layer_kg(),
                     Buoyancy::AtOnce => 0.0,

@@ -1,0 +1,136 @@
+//! Effects of houses: storages, generators, circuits that meet.
+
+use super::{Candidate, sensed};
+use crate::experiment::Experiment;
+use crate::unknown::Unknown;
+
+pub(super) fn tolerances(_: &Experiment, _: &mut Vec<Unknown>) {}
+
+pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
+    let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
+    for unit in &experiment.model.units {
+        let id = unit.id.as_str();
+        let kind = unit.params.kind();
+        if kind == "storage" && warm {
+            of_storage(id, all);
+        }
+        if power && (BURNERS.contains(&kind) || kind == AIR_SOURCE) {
+            of_generator(id, all);
+        }
+        if kind == AIR_SOURCE {
+            if power {
+                all.push(factor("G6", id, "power of the auxiliary heater", (0.7, 1.3), AUX));
+            }
+            if unit.params.to_value()["defrost"] == false && (warm || power) {
+                all.push(Candidate::effect(
+                    "G4",
+                    id,
+                    "de-icing",
+                    ("heat_w", "W"),
+                    |target| Unknown::between(target, 1000.0, 10_000.0),
+                    "the heat over some hours of operation in cold air",
+                ));
+            }
+        }
+    }
+    for circuit in &experiment.model.circuits {
+        let pumped = circuit.v_flow_m3_s.is_some() || feeds(experiment, &circuit.through);
+        let Some(branch) = circuit.branch.as_ref().filter(|_| pumped && warm) else { continue };
+        if branch.idle_opening == 0.0 {
+            all.push(Candidate::effect(
+                "H1",
+                &circuit.id,
+                "flow through the branch while its pump is off",
+                ("opening", "1"),
+                |target| Unknown::between(target, 0.01, 1.0),
+                "the flow of the branch, or temperatures at both of its ends, while another pump runs",
+            ));
+        }
+        all.push(Candidate::effect(
+            "H2",
+            &circuit.id,
+            "flow that a parallel pump draws through the branch",
+            ("share", "1"),
+            |target| Unknown::between(target, 0.02, 0.5),
+            "the flow of the branch with and without the other pump",
+        ));
+    }
+}
+
+/// Kinds that burn gas.
+const BURNERS: &[&str] = &["condensing_boiler", "chp", "stirling_chp"];
+const AIR_SOURCE: &str = "air_source_heat_pump";
+const AUX: &str = "electricity and heat in steps of the heater";
+
+/// Whether a generator of a house feeds a circuit.
+fn feeds(experiment: &Experiment, through: &[impl AsRef<str>]) -> bool {
+    let generator = |name: &str| {
+        let mut units = experiment.model.units.iter();
+        let unit = units.find(|unit| name.strip_prefix(unit.id.as_str()).is_some_and(no_more));
+        unit.is_some_and(|unit| BURNERS.contains(&unit.params.kind()))
+    };
+    through.iter().any(|name| generator(name.as_ref()))
+}
+
+/// Whether a name of a port ends here or goes on with the port.
+fn no_more(rest: &str) -> bool {
+    rest.is_empty() || rest.starts_with('.')
+}
+
+/// A factor on what the data say.
+fn factor(
+    id: &'static str,
+    component: &str,
+    words: &'static str,
+    (low, high): (f64, f64),
+    separates: &'static str,
+) -> Candidate {
+    let range = |target| Unknown::between(target, low, high).starting_at(1.0);
+    Candidate::effect(id, component, words, ("factor", "1"), range, separates)
+}
+
+fn of_storage(id: &str, all: &mut Vec<Candidate>) {
+    let standby = "a day without flow, and the temperature of the room";
+    all.push(factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby));
+    let idle = "hours without flow";
+    all.push(factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle));
+    all.push(Candidate::effect(
+        "T3",
+        id,
+        "water beyond the ports that takes part",
+        ("depth_m", "m"),
+        |target| Unknown::between(target, 0.02, 0.4),
+        "a sensor below the lowest port",
+    ));
+    all.push(Candidate::effect(
+        "T4",
+        id,
+        "mixing by the jet of an inlet",
+        ("share", "1"),
+        |target| Unknown::between(target, 0.02, 1.0),
+        "steps of the flow",
+    ));
+}
+
+fn of_generator(id: &str, all: &mut Vec<Candidate>) {
+    let both = "meters on both sides of the energy";
+    all.push(factor("G1", id, "efficiency of the generator", (0.8, 1.2), both));
+    let part = |target| Unknown::between(target, 0.7, 1.3).starting_at(1.0);
+    let load = Candidate::effect(
+        "G2",
+        id,
+        "efficiency at part load",
+        ("factor_40", "1"),
+        part,
+        "several loads",
+    );
+    all.push(load.with("factor_20", part).with("factor_60", part));
+    all.push(Candidate::effect(
+        "G3",
+        id,
+        "length of a start",
+        ("time_factor", "1"),
+        |target| Unknown::between(target, 0.3, 3.0).starting_at(1.0),
+        "several starts after pauses of different length",
+    ));
+}
