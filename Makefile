@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers explain-score bench bench-thermal bench-memory bench-peers instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers explain-score bench bench-thermal bench-memory bench-peers bench-ensemble learn instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -47,6 +47,7 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python examples/5gdhc-street/run.py
 	$(BIN)/python examples/soil-study/run.py
 	$(BIN)/python examples/rse-facility/run.py
+	$(BIN)/python examples/ensembles/sensitivity.py
 
 test-wheel: python ## The wheel in a new environment runs the tutorials as they stand
 	rm -rf target/new-user
@@ -66,6 +67,16 @@ validate: ## Slow cases, peers, large random sets
 		cargo test --release -p anergy-tests \
 		--test every_element --test random_networks --test robustness --test destest \
 		--test openmodelica_heat --test ait_pongau --test ulg_pipe --test building --test rse_facility --test weighted_pi --test hunting --test hunting_random --test storage_charging --test ambient_day --test explain_liege -- --nocapture
+
+.venv-learn/.installed:
+	$(PYTHON) -m venv .venv-learn
+	.venv-learn/bin/python -m pip install --quiet --disable-pip-version-check "maturin>=1.9.4,<2" "stable-baselines3>=2.7,<3"
+	touch $@
+
+learn: .venv-learn/.installed ## Train agents for anergy.gym and compare them with the rules (large download: torch)
+	VIRTUAL_ENV=$(CURDIR)/.venv-learn .venv-learn/bin/maturin develop --release --quiet -m crates/py/Cargo.toml
+	OMP_NUM_THREADS=1 .venv-learn/bin/python examples/learning/train.py --steps 200000 Pumps House
+	OMP_NUM_THREADS=1 .venv-learn/bin/python examples/learning/train.py --steps 80000 District
 
 .venv-peers/.installed:
 	$(PYTHON) -m venv .venv-peers
@@ -115,6 +126,10 @@ bench-peers: .venv-peers/.installed ## Hydraulics beside EPANET and pandapipes
 	cargo build --release -p anergy -p anergy-benches --bins
 	.venv-peers/bin/python benches/peers/speed.py
 
+bench-ensemble: ## Threads, throughput and memory of ensembles: 1 000 days of three houses, 200 winter weeks of a town
+	cargo build --release -p anergy
+	$(PYTHON) benches/ensemble/run.py
+
 instructions: ## Instructions of one warm solve with 1 000 edges (needs valgrind)
 	cargo build --release -p anergy-benches --bin warm_solve
 	@count() { valgrind --tool=callgrind --callgrind-out-file=/dev/null \
@@ -126,4 +141,4 @@ demo: ## The main job on the embedded study
 
 clean: ## Remove what was built
 	cargo clean
-	rm -rf $(VENV) .venv-peers results
+	rm -rf $(VENV) .venv-peers .venv-learn results
