@@ -35,6 +35,8 @@ use anergy_core::solar::Plane;
 const CELLS: usize = 4;
 /// Beyond this angle the beam counts nothing: its cosine, of 80 deg.
 const LEAST_COSINE: f64 = 0.173_648_177_666_930_3;
+/// Longer steps see the flow that the control has come to, s.
+const SETTLES_S: f64 = 300.0;
 /// The pump does not run slower.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -157,8 +159,10 @@ impl SolarCollector {
                     / (lift_k * self.medium.heat_capacity_j_kg_k * self.most_kg_s)
             }
         };
-        // Within a long step the sun may rise: the flow carries off what it sends now.
-        let room_k = (p.collector_max_k - back_k).max(1.0);
+        // Within a long step the sun may rise: the flow carries off what it sends now; the longer the step, the smaller the
+        // difference that the control would have come to within it.
+        let room_k = (p.collector_max_k - back_k) / (state[STEP_S] / SETTLES_S).max(1.0);
+        let room_k = room_k.max(1.0);
         let carried_kg_s =
             weather.absorbed_w_m2 * p.area_m2 / (room_k * self.medium.heat_capacity_j_kg_k);
         (self.most_kg_s * share.max(LEAST_SHARE)).max(carried_kg_s).min(self.most_kg_s)

@@ -3,7 +3,7 @@
 //! **Equation** counter flow, `Q = UA (d_1 - d_2)/ln(d_1/d_2)`, `d_1 = T_in - T_set` at the hot end, `d_2 = T_out - T_cold`
 //! at the cold end: with `y = d_2/d_1` it is `(y - 1)/ln y = Q/(UA d_1)`, whose left side rises with `y`; then
 //! `C = Q/(T_in - T_out)`. **Numerics** Newton in `ln y`, where the left side is convex: from above, to rounding in a
-//! few rounds. Where that takes more than the largest flow, or the water is too cold, the largest flow gives what it
+//! few rounds; far below 1 from the left, where the first step leads above. Where that takes more than the largest flow, or the water is too cold, the largest flow gives what it
 //! can. **Sources** `incropera2007`.
 
 use crate::direct_exchange::conductance_w_k;
@@ -45,16 +45,25 @@ impl Exchanger {
 
 /// `y` of `(y - 1)/ln y = k`.
 fn ratio(k: f64) -> f64 {
-    // With x = ln y: (e^x - 1)/x = k, which rises and is convex in x.
-    let mean = |x: f64| if x.abs() < 1e-5 { 1.0 + 0.5 * x } else { x.exp_m1() / x };
-    let slope = |x: f64| {
-        if x.abs() < 1e-3 { 0.5 + x / 3.0 } else { (x.exp() * (x - 1.0) + 1.0) / (x * x) }
+    // With x = ln y: (e^x - 1)/x = k, which rises and is convex in x. Its value and its slope share the exponential.
+    let law = |x: f64| {
+        if x.abs() < 1e-3 {
+            (1.0 + x * (0.5 + x / 6.0), 0.5 + x / 3.0)
+        } else {
+            let less = x.exp_m1();
+            (less / x, (less * (x - 1.0) + x) / (x * x))
+        }
     };
-    // Above the root: e^(x/2) is below the left side.
-    let mut x = if k >= 1.0 { 2.0 * k.ln() } else { 0.0 };
+    // Above the root from 1 on: e^(x/2) is below the left side. Far below the left side is -1/x.
+    let mut x = match k {
+        1.0.. => 2.0 * k.ln(),
+        0.3.. => 0.0,
+        _ => -1.0 / k,
+    };
     for _ in 0..MOST_ROUNDS {
-        let step = (mean(x) - k) / slope(x);
-        // The mean is above 1/(1 - x) - like tails on the left: steps are kept within the range of doubles.
+        let (mean, slope) = law(x);
+        let step = (mean - k) / slope;
+        // Steps are kept within the range of doubles.
         x = (x - step).max(-700.0);
         if step.abs() < 1e-12 * (1.0 + x.abs()) {
             break;
@@ -69,7 +78,7 @@ mod tests {
 
     #[test]
     fn the_ratio_of_a_logarithmic_mean() {
-        for y in [1e-6, 0.01, 0.5, 0.999_999, 1.0, 1.5, 20.0, 1e4] {
+        for y in [1e-200, 1e-6, 0.01, 0.05, 0.5, 0.999_999, 1.0, 1.5, 20.0, 1e4] {
             let k: f64 = if y == 1.0 { 1.0 } else { (y - 1.0) / f64::ln(y) };
             assert!((ratio(k) / y - 1.0).abs() < 1e-6, "{y}: {}", ratio(k));
         }
