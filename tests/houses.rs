@@ -382,7 +382,7 @@ fn what_is_wrong_is_an_event() {
 
 #[test]
 fn the_house_of_the_laboratory_heats_for_itself() {
-    let folder = anergy_tests::workspace().join("examples/laboratory-house");
+    let folder = anergy_tests::workspace().join("examples/laboratory-sf1");
     let text = std::fs::read_to_string(folder.join("model.toml")).unwrap();
     let mut simulation = simulation(&text);
     advance(&mut simulation, 2.0 * 86_400.0, 60.0);

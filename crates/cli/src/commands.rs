@@ -4,6 +4,7 @@ pub mod check;
 pub mod demo;
 pub mod explain;
 pub mod export;
+pub mod houses;
 pub mod import;
 pub mod measured;
 pub mod report;

@@ -107,6 +107,11 @@ enum Command {
         #[arg(long, conflicts_with = "markdown")]
         variations: bool,
     },
+    /// List the houses of the library, or print one as a model file has it
+    Houses {
+        /// Name of a house, for example SF1
+        name: Option<String>,
+    },
     /// Read the network of another program into a model file, or measured series
     Import {
         #[command(subcommand)]
@@ -202,6 +207,7 @@ fn main() -> ExitCode {
         }
         Command::Sweep { model, wanted } => commands::sweep::sweep(&model, &wanted),
         Command::Schema { markdown, variations } => commands::schema::schema(markdown, variations),
+        Command::Houses { name } => commands::houses::houses(name.as_deref()),
         Command::Import { format } => match format {
             ImportFormat::Epanet { file, out, steady, self_acting } => {
                 commands::import::epanet(&file, &out, EpanetOptions { steady, self_acting })

@@ -69,6 +69,19 @@ pub struct Balance {
     pub scale: f64,
 }
 
+/// A part of the state of a controller that is recorded as `id.name`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StateChannel {
+    /// Name within the controller.
+    pub name: &'static str,
+    /// Unit of the channel.
+    pub unit: &'static str,
+    /// Its place in the state.
+    pub place: usize,
+    /// Kinds of the events when it becomes 1, and 0 again, where that is worth one.
+    pub event: Option<[&'static str; 2]>,
+}
+
 /// A local controller; its state lives in the slice it is given.
 pub trait Controller {
     /// When it updates.
@@ -79,6 +92,16 @@ pub trait Controller {
 
     /// State at the start of a run.
     fn initial_state(&self) -> Vec<f64>;
+
+    /// The parts of its state that others can see.
+    fn channels(&self) -> &'static [StateChannel] {
+        &[]
+    }
+
+    /// The words of an event of one of its channels.
+    fn says(&self, _event: &str, _inputs: &Inputs, _outputs: &[f64]) -> String {
+        String::new()
+    }
 
     /// Reads the inputs and writes the outputs; `dt_s` is the time since the last update (0 at the
     /// first).

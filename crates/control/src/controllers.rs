@@ -6,6 +6,7 @@ pub mod cascade;
 pub mod feed_forward;
 pub mod hysteresis;
 pub mod pi;
+pub mod rule;
 pub mod storage_charging;
 pub mod tank_charging;
 pub mod thermostatic_valve;
@@ -27,6 +28,7 @@ anergy_core::registry! {
         Balancing("balancing", balancing::Balancing, balancing::BalancingParams),
         TwoSensors("two_sensors", tank_charging::TankCharging, tank_charging::TwoSensorsParams),
         TankCharging("tank_charging", tank_charging::TankCharging, tank_charging::TankChargingParams),
+        Rule("rule", rule::Rule, rule::RuleParams),
         FeedForward("feed_forward", feed_forward::FeedForward, feed_forward::FeedForwardParams),
     }
 }
@@ -37,6 +39,7 @@ pub fn ports(kind: &str) -> Ports {
         "balancing" => balancing::PORTS,
         "storage_charging" => storage_charging::PORTS,
         "cascade" => cascade::PORTS,
+        "rule" => rule::PORTS,
         "tank_charging" => tank_charging::TANK,
         "two_sensors" => tank_charging::TWO_SENSORS,
         "two_step" => two_step::PORTS,

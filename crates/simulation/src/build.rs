@@ -11,6 +11,7 @@ mod prescribed;
 mod pressure;
 mod pulses;
 mod regulators;
+mod rules;
 mod signals;
 mod site_inputs;
 mod stations;
@@ -112,9 +113,10 @@ impl Builder<'_> {
             )
             .chain(model.prescriptions.iter().map(|p| ("prescription", p.id.as_str(), &p.place)));
         self.check_doubled(others.collect());
-        if model.edges.is_empty() && self.problems.is_empty() {
-            let hint = "add a [[trench]], a [[station]] or an [[edge]]".to_owned();
-            self.report("the model has no edges".into(), None, Some(hint));
+        let alone = model.nodes.is_empty() && !model.units.is_empty();
+        if model.edges.is_empty() && !alone && self.problems.is_empty() {
+            let hint = Some("add a [[trench]], a [[station]] or an [[edge]]".into());
+            self.report("the model has no edges".into(), None, hint);
         }
     }
 
@@ -188,8 +190,7 @@ impl Builder<'_> {
         let drivers = if whole { self.drivers(&signals, &mut writers) } else { Vec::new() };
         let steps = self.run_times();
         if !self.problems.is_empty() || !whole {
-            // Controllers measure channels, which need a sound plan.
-            return None;
+            return None; // Controllers measure channels, which need a sound plan.
         }
         let soil_step = network.soil.iter().filter_map(|s| Time::from_s(s.longest_step_s())).min();
         let vessels = self.vessels(&network, &node_ids);
@@ -268,7 +269,6 @@ impl Builder<'_> {
             soil_step,
             network,
         };
-        // Only what measures needs them now.
         if !model.controllers.is_empty() || !model.sensors.is_empty() {
             (plan.channels, plan.sources) = channels::channels(&plan);
         }

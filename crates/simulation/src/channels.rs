@@ -1,5 +1,6 @@
 //! What can be recorded and measured: every quantity of every component by name.
 
+mod control;
 mod units;
 
 use crate::plan::Plan;
@@ -11,6 +12,7 @@ use anergy_core::port::Port;
 use anergy_core::recorder::{Channel, ChannelGroup};
 use anergy_network::elements::Element;
 use anergy_network::graph::Coupling;
+pub(crate) use control::{add_controller, add_sensors};
 
 /// Where the value of a channel comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +83,8 @@ pub enum Source {
     PumpSwing(usize),
     /// Reading of a sensor.
     Sensor(usize),
+    /// A part of the state of a controller, among those of all.
+    ControllerState(usize),
     /// An input signal.
     Signal(SignalId),
     /// Electric power of all pumps, W.
@@ -201,7 +205,8 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
         list.add(ChannelGroup::Balances, "network", "friction_j", "J", joule);
     }
     units::balances(&mut list, plan);
-    sensors(&mut list, plan);
+    control::sensors(&mut list, plan);
+    control::controllers(&mut list, plan);
     for (i, watch) in plan.swing_watches.iter().enumerate() {
         let name = &plan.edge_names[watch.edge];
         list.add(ChannelGroup::Control, name, "swings", "1", Source::PumpSwing(i));
@@ -211,20 +216,6 @@ pub(crate) fn channels(plan: &Plan) -> (Vec<Channel>, Vec<Source>) {
 
 /// Unit of a difference of temperatures, which counts from nothing.
 pub(crate) const DIFFERENCE_K: &str = "delta K";
-
-/// Adds the readings of the sensors.
-pub(crate) fn add_sensors(plan: &mut Plan) {
-    let channels = std::mem::take(&mut plan.channels);
-    let mut list = List { channels, sources: std::mem::take(&mut plan.sources) };
-    sensors(&mut list, plan);
-    (plan.channels, plan.sources) = (list.channels, list.sources);
-}
-
-fn sensors(list: &mut List, plan: &Plan) {
-    for (i, sensor) in plan.sensors.iter().enumerate() {
-        list.add(ChannelGroup::Control, &sensor.name, "value", &sensor.unit, Source::Sensor(i));
-    }
-}
 
 struct List {
     channels: Vec<Channel>,
@@ -365,6 +356,7 @@ pub(crate) fn value(plan: &Plan, state: &State, source: Source) -> f64 {
             Said::Hunting => 2.0,
         },
         Source::Sensor(i) => state.sensors[i].value(),
+        Source::ControllerState(i) => state.controller_states[i],
         Source::Signal(id) => state.signals[id.index()],
         Source::TotalElectric => plan.total_electric_w(network),
         Source::TotalUnits => plan.total_units_w(network),

@@ -190,9 +190,20 @@ impl Model {
         });
         let sensors: HashSet<String> =
             model.sensors.iter().map(|sensor| format!("{}.value", sensor.entry.id)).collect();
-        model
-            .controllers
-            .retain(|c| c.named().all(|(_, name)| component(name) || sensors.contains(name)));
+        // A rule goes by other rules, which must be left as well.
+        loop {
+            let before = model.controllers.len();
+            let ids: HashSet<String> = model.controllers.iter().map(|c| c.id.clone()).collect();
+            let of_rule =
+                |name: &str| name.rsplit_once('.').is_some_and(|(id, _)| ids.contains(id));
+            model.controllers.retain(|c| {
+                c.named()
+                    .all(|(_, name)| component(name) || sensors.contains(name) || of_rule(name))
+            });
+            if model.controllers.len() == before {
+                break;
+            }
+        }
         model.prescriptions.retain(|p| component(&p.entry.quantity) && component(&p.entry.free));
         let set_points: HashSet<String> = model
             .controllers

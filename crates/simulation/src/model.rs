@@ -131,12 +131,22 @@ pub struct ControllerSpec {
 }
 
 impl ControllerSpec {
+    /// Field and name of every channel that it measures; a rule names its channels within its conditions.
+    pub fn measured(&self) -> Vec<(&'static str, &str)> {
+        let fields: Vec<&'static str> = match &self.params {
+            ControllerParams::Rule(rule) => {
+                rule.measures().into_iter().map(|(field, _)| field).collect()
+            }
+            params => ports(params.kind()).measures.to_vec(),
+        };
+        fields.into_iter().zip(self.measures.iter().map(String::as_str)).collect()
+    }
+
     /// Field and name of every channel and signal.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        let ports = ports(self.params.kind());
-        let fields = ports.measures.iter().chain(ports.acts_on);
-        let names = self.measures.iter().chain(&self.acts_on);
-        fields.copied().zip(names.map(String::as_str))
+        let acts_on = ports(self.params.kind()).acts_on.iter().copied();
+        let acts_on = acts_on.zip(self.acts_on.iter().map(String::as_str));
+        self.measured().into_iter().chain(acts_on)
     }
 }
 

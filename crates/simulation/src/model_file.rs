@@ -9,6 +9,7 @@ pub mod expand;
 mod fluid;
 mod ground;
 mod heat_pump_map;
+pub mod house_library;
 mod houses;
 mod nodes;
 mod one_pump;

@@ -6030,6 +6030,80 @@ class _Controller:
         offset_s
             Time of the first update, s. Default: 0.0. Also offset_min, offset_h, offset_d.
         """
+    def rule(
+        self,
+        *,
+        id: str | None = None,
+        acts_on: str | None = None,
+        on: str | None = None,
+        off: str | None = None,
+        lock: str | None = None,
+        unlock: str | None = None,
+        on_output: float | None = None,
+        off_output: float | None = None,
+        safe_output: float | None = None,
+        initially_on: bool | None = None,
+        role: Literal["rule", "backup"] | None = None,
+        wanted: float | None = None,
+        wanted_min: float | None = None,
+        wanted_max: float | None = None,
+        timeout_s: float | None = None,
+        timeout_min: float | None = None,
+        timeout_h: float | None = None,
+        timeout_d: float | None = None,
+        interval_s: float | None = None,
+        interval_min: float | None = None,
+        interval_h: float | None = None,
+        interval_d: float | None = None,
+        offset_s: float | None = None,
+        offset_min: float | None = None,
+        offset_h: float | None = None,
+        offset_d: float | None = None,
+    ) -> str | None:
+        """Adds `[[controller]]` with kind = "rule".
+
+        A rule as written in a model file.
+
+        Parameters
+        ----------
+        id
+            Name; default that of the first signal, with .controller
+        acts_on
+            Signal it drives
+        on
+            When it goes on, for example "storage.soc < 0.6 and storage.t_8_k < 65 degC".
+        off
+            When it goes off, for example "storage.t_3_k > 70 degC". Absent: where `on` does not hold.
+        lock
+            When it is locked for safety.
+        unlock
+            When the lock is released. Absent: where `lock` does not hold.
+        on_output
+            Output while on. Default: 1.0.
+        off_output
+            Output while off. Default: 0.0.
+        safe_output
+            Output while locked, and instead of what must not be wanted. Absent: that of off.
+        initially_on
+            On at the start of a run. Default: False.
+        role
+            Whether it decides, or only helps out behind what an energy management wants. One of rule, backup.
+            Default: rule.
+        wanted
+            Output that is wanted while nothing drives the signal; for a backup. Absent: that of off.
+        wanted_min
+            The smallest value that may be wanted; for a backup. Absent: the smaller of both outputs.
+        wanted_max
+            The largest value that may be wanted; for a backup. Absent: the larger of both outputs.
+        timeout_s
+            What is wanted counts no more where the signal `heartbeat` has not changed for so long, s; for a
+            backup. Also timeout_min, timeout_h, timeout_d.
+        interval_s
+            Time between two updates, s; 0 updates at every step. Default: 0.0. Also interval_min, interval_h,
+            interval_d.
+        offset_s
+            Time of the first update, s. Default: 0.0. Also offset_min, offset_h, offset_d.
+        """
     def feed_forward(
         self,
         *,
@@ -7214,7 +7288,7 @@ class Grid:
     def house(
         self,
         site: str,
-        type: str | None = None,
+        type: str | Sequence[str] | None = None,
         *,
         station: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
         unit: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
@@ -7224,6 +7298,7 @@ class Grid:
         schedule: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
         series: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
         set: Mapping[str, Any] | None = None,
+        without: Sequence[str] | None = None,
     ) -> str | None:
         """Adds `[[house]]`.
 
@@ -7232,7 +7307,7 @@ class Grid:
         site
             Site that it stands at
         type
-            Name of a house_type
+            Name of a house_type or of a house of the library (SF1, SF2, SF3, SF4, MF5), or a list of them
         station
             As [[station]], with names within the house
         unit
@@ -7249,6 +7324,8 @@ class Grid:
             As [[series]], with names within the house
         set
             Single fields: "storage.volume_l" = 500
+        without
+            Parts of its type that are left out
         """
     def site(
         self,

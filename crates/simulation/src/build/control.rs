@@ -7,7 +7,7 @@ use crate::diagnostic::did_you_mean;
 use crate::model::{ControllerSpec, Place};
 use crate::plan::{Plan, PlannedController, PlannedSensor};
 use crate::wording::refused;
-use anergy_control::controllers::ports;
+use anergy_control::controllers::{LocalController, ports};
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
 use anergy_core::medium::ZERO_CELSIUS_K;
@@ -133,6 +133,7 @@ impl Builder<'_> {
         set_points: &[Range<usize>],
         writers: &mut HashMap<SignalId, Writer>,
     ) {
+        self.show_controllers(plan);
         let mut state_len = 0;
         for (spec, set_points) in self.model.controllers.iter().zip(set_points) {
             let what = format!("controller \"{}\"", spec.id);
@@ -142,10 +143,9 @@ impl Builder<'_> {
                 self.problems.push(problem);
             }
             let ports = ports(spec.params.kind());
-            let measured: Vec<Option<usize>> = ports
-                .measures
-                .iter()
-                .zip(&spec.measures)
+            let measured: Vec<Option<usize>> = spec
+                .measured()
+                .into_iter()
                 .map(|(field, name)| self.channel(plan, &what, field, name, &spec.place))
                 .collect();
             let mut acts_on = Vec::new();
@@ -168,6 +168,9 @@ impl Builder<'_> {
             if acts_on.len() < spec.acts_on.len() {
                 continue;
             }
+            if let LocalController::Rule(rule) = &controller {
+                self.check_conditions(plan, spec, rule, &measured);
+            }
             let state = controller.initial_state();
             let timing = controller.timing();
             let time = |s| Time::from_s(s).unwrap_or(Time::ZERO);
@@ -175,8 +178,10 @@ impl Builder<'_> {
                 let spec = plan.signals.spec(*signal);
                 (spec.min, spec.max)
             });
-            let counts_from_zero_celsius = plan.channels[measured[0]].unit == "K"
-                && !matches!(plan.sources[measured[0]], Source::Sensor(i) if plan.sensors[i].minus.is_some());
+            let counts_from_zero_celsius = measured.first().is_some_and(|first| {
+                plan.channels[*first].unit == "K"
+                    && !matches!(plan.sources[*first], Source::Sensor(i) if plan.sensors[i].minus.is_some())
+            });
             let planned = PlannedController {
                 name: spec.id.clone(),
                 measures: measured.iter().map(|&i| plan.sources[i]).collect(),

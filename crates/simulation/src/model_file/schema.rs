@@ -74,7 +74,7 @@ pub fn schema() -> Value {
         "network": entry(&schema_for!(NetworkEntry), &[]),
         "station_type": { "type": "object", "additionalProperties": station_type },
         "house_type": { "type": "object", "additionalProperties": house_schema(&[]) },
-        "house": list(house_schema(&["site", "type", "set"])),
+        "house": list(house_schema(&["site", "type", "set", "without"])),
         "site": list(entry(&schema_for!(SiteEntry), &[])),
         "trench": list(trench),
         "station": list(station),
@@ -171,7 +171,16 @@ fn house_schema(own: &[&str]) -> Value {
     for field in own {
         let schema = match *field {
             "site" => text("Site that it stands at"),
-            "type" => text("Name of a house_type"),
+            "type" => json!({
+                "type": ["string", "array"],
+                "items": { "type": "string" },
+                "description": "Name of a house_type or of a house of the library (SF1, SF2, SF3, SF4, MF5), or a list of them",
+            }),
+            "without" => json!({
+                "type": "array",
+                "items": { "type": "string" },
+                "description": "Parts of its type that are left out",
+            }),
             _ => {
                 json!({ "type": "object", "description": "Single fields: \"storage.volume_l\" = 500" })
             }
@@ -207,6 +216,9 @@ fn controllers() -> Value {
         own.extend(ports.measures.iter().map(|field| (*field, text("Channel it measures"))));
         own.extend(ports.acts_on.iter().map(|field| (*field, text("Signal it drives"))));
         let mut required: Vec<&str> = ports.measures.iter().chain(ports.acts_on).copied().collect();
+        if *kind == "rule" {
+            required = vec!["on"];
+        }
         if *kind == "weighted_pi" {
             let meaning =
                 "Station whose channels and signals it takes where they are not named one by one";

@@ -7,12 +7,15 @@ use crate::plan::{Plan, PlannedController, PlannedSensor};
 use crate::state::State;
 use anergy_control::controller::{Balance, Inputs};
 use anergy_core::clock::Time;
+use anergy_core::recorder::{Event, Severity};
 
 /// Work space of the controllers; holds nothing that a result depends on.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
     pub(super) measured: Vec<f64>,
     pub(super) outputs: Vec<f64>,
+    /// What a controller showed before its update.
+    before: Vec<f64>,
 }
 
 impl Desk {
@@ -20,7 +23,11 @@ impl Desk {
         let most = |len: fn(&PlannedController) -> usize| {
             vec![0.0; plan.controllers.iter().map(len).max().unwrap_or(0)]
         };
-        Self { measured: most(|c| c.measures.len()), outputs: most(|c| c.acts_on.len()) }
+        Self {
+            measured: most(|c| c.measures.len()),
+            outputs: most(|c| c.acts_on.len()),
+            before: most(|c| c.controller.channels().len()),
+        }
     }
 
     /// Room for one more controller.
@@ -82,25 +89,40 @@ impl Simulation {
             let dt_s = (now - self.state.last_tick[i]).as_s();
             self.state.last_tick[i] = now;
             self.state.next_tick[i] = now + planned.interval;
-            let desk = &mut self.desk;
-            planned.outputs(&self.state, &mut desk.outputs);
-            let controller_state = &mut self.state.controller_states;
-            // Taken out of the state, so that the inputs can refer to it.
-            let mut own = std::mem::take(controller_state);
-            let inputs = planned.inputs(&self.plan, &self.state, &mut desk.measured);
-            let done = planned.controller.update(
-                dt_s,
-                &inputs,
-                &mut own[planned.state.clone()],
-                &mut desk.outputs,
-            );
-            self.state.controller_states = own;
+            let Desk { measured, outputs, before } = &mut self.desk;
+            planned.outputs(&self.state, outputs);
+            planned.inputs(&self.plan, &self.state, measured);
+            let inputs = Inputs {
+                measured,
+                set_points: &self.state.signals[planned.set_points.clone()],
+                limits: &planned.limits,
+            };
+            let own = &mut self.state.controller_states[planned.state.clone()];
+            let shown = planned.controller.channels();
+            before.clear();
+            before.extend(shown.iter().map(|channel| own[channel.place]));
+            let done = planned.controller.update(dt_s, &inputs, own, outputs);
+            for (channel, before) in shown.iter().zip(&*before) {
+                if let Some(kinds) = channel.event
+                    && own[channel.place] != *before
+                {
+                    let kind = kinds[usize::from(own[channel.place] == 0.0)];
+                    let says = planned.controller.says(kind, &inputs, outputs);
+                    self.events.push(Event {
+                        time: now,
+                        severity: Severity::Warning,
+                        kind: kind.into(),
+                        message: format!("{}: {says}", planned.name),
+                        component: planned.name.clone(),
+                    });
+                }
+            }
             done.map_err(|source| RunError::Control {
                 time: now.to_string(),
                 controller: planned.name.clone(),
                 source,
             })?;
-            for (signal, output) in planned.acts_on.iter().zip(&desk.outputs) {
+            for (signal, output) in planned.acts_on.iter().zip(&*outputs) {
                 if !self.state.taken_over[signal.index()] {
                     self.state.signals[signal.index()] = *output;
                 }
@@ -129,11 +151,15 @@ impl Simulation {
     pub(crate) fn rest_controllers(&mut self) {
         let (mut measured, mut outputs) = (Vec::new(), Vec::new());
         for planned in &self.plan.controllers {
-            let mut own = std::mem::take(&mut self.state.controller_states);
             planned.outputs(&self.state, &mut outputs);
-            let inputs = planned.inputs(&self.plan, &self.state, &mut measured);
-            planned.controller.rest(&inputs, &outputs, &mut own[planned.state.clone()]);
-            self.state.controller_states = own;
+            planned.inputs(&self.plan, &self.state, &mut measured);
+            let inputs = Inputs {
+                measured: &measured,
+                set_points: &self.state.signals[planned.set_points.clone()],
+                limits: &planned.limits,
+            };
+            let own = &mut self.state.controller_states[planned.state.clone()];
+            planned.controller.rest(&inputs, &outputs, own);
         }
     }
 }

@@ -75,17 +75,37 @@ impl ModelReader<'_> {
                 return None;
             }
         }
+        if kind == "rule" {
+            words.asked.push("acts_on");
+        }
+        // A rule need not act on anything: others can go by it.
+        let silent = kind == "rule" && words.tree.get("acts_on").is_none();
         let mut names = |fields: &[&'static str]| -> Vec<Option<String>> {
             fields.iter().map(|field| self.required_text(&mut words, field)).collect()
         };
-        let (measures, acts_on) = (names(ports.measures), names(ports.acts_on));
+        let acts_on = if silent { Vec::new() } else { names(ports.acts_on) };
+        let measures = names(ports.measures);
         let id = self.optional_text(&mut words, "id").or(own_id);
         let first = acts_on.iter().flatten().next().map_or("?", String::as_str);
         let id = id.unwrap_or_else(|| format!("{first}.controller"));
         words.what = format!("controller \"{id}\" ({kind})");
+        if silent && id == "?.controller" {
+            let problem =
+                Diagnostic::new("rule: it acts on nothing and has no id", words.tree.span.range());
+            let hint =
+                "write acts_on = \"UNIT.modulation\", or an id by which other rules can name it";
+            self.reader.report(problem.with_hint(hint));
+            return None;
+        }
         let (params, place) = self.parameters(words, &kind)?;
         let all = |names: Vec<Option<String>>| names.into_iter().collect::<Option<Vec<String>>>();
-        Some(ControllerSpec { id, measures: all(measures)?, acts_on: all(acts_on)?, params, place })
+        let measures = match &params {
+            ControllerParams::Rule(rule) => {
+                rule.measures().into_iter().map(|(_, channel)| channel).collect()
+            }
+            _ => all(measures)?,
+        };
+        Some(ControllerSpec { id, measures, acts_on: all(acts_on)?, params, place })
     }
 
     /// Fills in the channels and signals of the station that an entry names, where it does not give them

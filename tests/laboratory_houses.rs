@@ -1,0 +1,190 @@
+//! The five houses of the laboratory (`examples/laboratory-*`): a cold week each, for itself, and a day in a ring; balances close,
+//! rooms and taps are warm. `LABORATORY=all` also runs a year of each house and the ring in steps of 1 s (`make validate`).
+
+#![allow(clippy::unwrap_used)]
+
+use anergy_core::clock::Time;
+use anergy_core::recorder::Event;
+use anergy_simulation::balance::Balances;
+use anergy_simulation::build::build;
+use anergy_simulation::model::Model;
+use anergy_simulation::simulation::Simulation;
+use std::path::Path;
+
+const HOUSES: [&str; 5] = ["sf1", "sf2", "sf3", "sf4", "mf5"];
+
+fn text(house: &str) -> String {
+    let path = anergy_tests::workspace().join(format!("examples/laboratory-{house}/model.toml"));
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn simulation(text: &str) -> Simulation {
+    let model = Model::from_toml(text, Path::new("."))
+        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
+    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(text)));
+    Simulation::new(plan).unwrap()
+}
+
+fn advance(simulation: &mut Simulation, seconds: f64, step_s: f64) {
+    let end = simulation.time() + Time::from_s(seconds).unwrap();
+    simulation.advance_to(end, Time::from_s(step_s).unwrap()).unwrap();
+}
+
+fn get(simulation: &Simulation, channel: &str) -> f64 {
+    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
+}
+
+/// Electric units of a house.
+fn electric(house: &str) -> &'static [&'static str] {
+    match house {
+        "sf1" => &["chp", "boiler", "collector", "mixer", "water", "people"],
+        "sf2" => &["heat_pump", "boiler", "collector", "mixer", "water", "people", "roof"],
+        "sf3" => &["heat_pump", "collector", "mixer", "water", "people", "roof"],
+        "sf4" => &["stirling", "mixer", "water", "people", "roof"],
+        _ => &[
+            "small_chp",
+            "large_chp",
+            "boiler",
+            "mixer",
+            "water",
+            "flat_1",
+            "flat_2",
+            "flat_3",
+            "flat_4",
+        ],
+    }
+}
+
+/// Heat into the room and the taps that was missing: K h and K l.
+fn discomfort(simulation: &Simulation, house: &str) -> (f64, f64) {
+    let of = |name: &str| get(simulation, &format!("{house}.{name}"));
+    (of("building.dc_heat_k_s") / 3600.0, 1e3 * of("water.dc_water_k_m3"))
+}
+
+fn electric_w(simulation: &Simulation, house: &str) -> f64 {
+    let of = |name: &str| get(simulation, &format!("{house}.{name}"));
+    let units = electric(house).iter().map(|unit| of(&format!("{unit}.electric_w")));
+    let rod_w = if house == "sf4" { of("storage.rod_w") } else { 0.0 };
+    units.sum::<f64>() + rod_w
+}
+
+/// A run of a house alone: heat and electricity close, what burns is within its efficiency, rooms and taps are warm.
+fn runs_alone(house: &str, days: f64) -> Simulation {
+    let mut simulation = simulation(&text(house));
+    let (mut sum_j, mut grid_j) = (0.0, 0.0);
+    for _ in 0..(days * 1440.0) as u32 {
+        advance(&mut simulation, 60.0, 60.0);
+        sum_j += 60.0 * electric_w(&simulation, house);
+        grid_j += 60.0 * get(&simulation, &format!("{house}.grid.grid_w"));
+    }
+    let balances = Balances::of(&simulation);
+    assert!(balances.units_error() < 1e-9, "{house}: {balances:?}");
+    assert!((grid_j - sum_j).abs() < 1e-9 * grid_j.abs().max(3.6e6), "{house}: {grid_j} {sum_j}");
+    assert_eq!(discomfort(&simulation, house), (0.0, 0.0), "{house}");
+    for unit in electric(house) {
+        let of = |name: &str| {
+            let channel = simulation.channel(&format!("{house}.{unit}.{name}")).ok()?;
+            Some(simulation.get(channel) / 3.6e6)
+        };
+        let (Some(fuel), Some(heat)) = (of("fuel_j"), of("heat_j")) else { continue };
+        let useful = heat + of("generated_j").unwrap_or(0.0);
+        assert!(
+            useful <= 1.06 * fuel && useful >= 0.7 * fuel,
+            "{house} {unit}: {useful} of {fuel} kWh"
+        );
+    }
+    let troubles: Vec<Event> = simulation
+        .take_events()
+        .filter(|event| ["tripped", "too_cold", "locked"].contains(&event.kind.as_str()))
+        .collect();
+    assert!(troubles.is_empty(), "{house}: {troubles:?}");
+    simulation
+}
+
+#[test]
+fn a_cold_week_of_each_house() {
+    // Starts of generators, kWh of heat that the documentation of the examples says.
+    let said: [(&str, &str, f64, f64); 7] = [
+        ("sf1", "chp", 3.0, 734.0),
+        ("sf1", "boiler", 30.0, 358.0),
+        ("sf2", "heat_pump", 88.0, 771.0),
+        ("sf3", "heat_pump", 124.0, 810.0),
+        ("sf4", "stirling", 7.0, 818.0),
+        ("mf5", "small_chp", 28.0, 524.0),
+        ("mf5", "large_chp", 28.0, 1532.0),
+    ];
+    for house in HOUSES {
+        let simulation = runs_alone(house, 7.0);
+        for (_, unit, starts, heat_kwh) in said.iter().filter(|row| row.0 == house) {
+            let of = |name: &str| get(&simulation, &format!("{house}.{unit}.{name}"));
+            let found = (of("starts"), of("heat_j") / 3.6e6);
+            assert!(
+                (found.0 - starts).abs() <= 0.1 * starts + 1.0
+                    && (found.1 - heat_kwh).abs() < 0.03 * heat_kwh,
+                "{house} {unit}: {found:?}, documented {starts} starts, {heat_kwh} kWh"
+            );
+        }
+    }
+}
+
+#[test]
+fn steps_of_hours_work() {
+    for house in HOUSES {
+        let heat = |step_s: f64| {
+            let mut simulation = simulation(&text(house));
+            advance(&mut simulation, 7.0 * 86_400.0, step_s);
+            assert!(Balances::of(&simulation).units_error() < 1e-9, "{house}: {step_s} s");
+            let (room_k_h, water_k_l) = discomfort(&simulation, house);
+            assert!(
+                room_k_h < 0.5 && water_k_l < 1.0,
+                "{house}, {step_s} s: {room_k_h} K h, {water_k_l} K l"
+            );
+            get(&simulation, &format!("{house}.building.heat_j"))
+        };
+        let fine = heat(60.0);
+        for step_s in [900.0, 3600.0] {
+            let coarse = heat(step_s);
+            assert!(
+                (coarse - fine).abs() < 0.05 * fine,
+                "{house}, {step_s} s: {coarse} of {fine} J"
+            );
+        }
+    }
+}
+
+fn ring(file: &str, step_s: f64) -> Simulation {
+    let path = anergy_tests::workspace().join("examples/laboratory-ring").join(file);
+    let text = std::fs::read_to_string(path).unwrap();
+    // The step decides how the flow of a station is held.
+    let text = text.replace("step = \"1s\"", &format!("step = \"{step_s}s\""));
+    let mut simulation = simulation(&text);
+    advance(&mut simulation, 86_400.0, step_s);
+    let balances = Balances::of(&simulation);
+    assert!(balances.units_error() < 1e-9 && balances.heat_error() < 1e-6, "{file}: {balances:?}");
+    for house in HOUSES {
+        let of = |name: &str| get(&simulation, &format!("{house}.{name}"));
+        println!(
+            "{file} {house}: station {:.1} kWh, discomfort {:?}, feed-in {}, extract {}",
+            of("station.heat_j") / 3.6e6,
+            discomfort(&simulation, house),
+            of("feed_in.on"),
+            of("extract.on"),
+        );
+    }
+    let mut kinds = std::collections::BTreeMap::new();
+    for event in simulation.take_events() {
+        *kinds.entry((event.kind, event.component)).or_insert(0) += 1;
+    }
+    println!("{kinds:?}");
+    simulation
+}
+
+#[test]
+fn a_winter_day_in_the_ring() {
+    for file in ["model.toml", "island.toml"] {
+        let simulation = ring(file, 60.0);
+        for house in HOUSES {
+            assert_eq!(discomfort(&simulation, house), (0.0, 0.0), "{file} {house}");
+        }
+    }
+}
