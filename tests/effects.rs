@@ -57,6 +57,8 @@ fn subject(id: &str) -> (&'static str, &'static str) {
         "H1" | "H2" => ("two-pipe", "sf1.engine"),
         "H3" => ("three-houses", "sf1.feed_in_pump"),
         "H4" => ("three-houses", "sf2.feed_in_check_valve"),
+        "H8" => ("three-way", "mixer"),
+        "P11" => ("three-houses", "sf1.hot"),
         "X1" => ("three-houses", "sf1.heat_exchanger"),
         "G4" | "G6" => ("heat-pumps", "h3.heat_pump"),
         "G1" | "G2" | "G3" => ("two-pipe", "sf1.chp"),
@@ -71,7 +73,8 @@ fn neutral(id: &str) -> Value {
         "P1" => json!({ "wall_capacity_j_m_k": 0.0, "film_factor": 1.0 }),
         "P7" => json!({ "dispersion_m2_s": 0.0 }),
         "H1" => json!({ "opening": 0.0 }),
-        "H2" | "H4" => json!({ "share": 0.0 }),
+        "P11" => json!({ "m_flow_kg_s": 0.0 }),
+        "H2" | "H4" | "H8" => json!({ "share": 0.0 }),
         "T3" => json!({ "depth_m": 0.0 }),
         "T4" => json!({ "share": 0.0, "richardson": 1.0 }),
         "G2" => json!({ "factor_20": 1.0, "factor_40": 1.0, "factor_60": 1.0 }),
@@ -97,7 +100,10 @@ fn neutral_values_leave_the_model_and_its_run_identical() {
         let (example, component) = subject(id);
         let dir = workspace().join("examples").join(example);
         let (text, plain, end_of_plain) = before.entry(example).or_insert_with(|| {
-            let text = std::fs::read_to_string(dir.join("model.toml")).unwrap();
+            let text = match example {
+                "three-way" => MIXER.to_owned(),
+                _ => std::fs::read_to_string(dir.join("model.toml")).unwrap(),
+            };
             let plain = Model::from_toml(&text, &dir).unwrap();
             let end_of_plain = end(&plain);
             (text, plain, end_of_plain)
@@ -257,6 +263,65 @@ fn effects_survive_the_plain_form_and_are_cut_out_with_their_pipe() {
     assert_eq!(dp_pa(&again).to_bits(), dp_pa(&model).to_bits());
     let part = model.isolate(&["pipe"], &[]).unwrap();
     assert_eq!(part.effects, model.effects);
+}
+
+/// Hot and cold water at the same pressure, mixed behind a three-way valve.
+const MIXER: &str = r#"
+format = 1
+[run]
+initial_degc = 40
+[[node]]
+id = "warm"
+kind = "pressure_boundary"
+pressure_bar = 2
+temperature_degc = 60
+[[node]]
+id = "cool"
+kind = "pressure_boundary"
+pressure_bar = 2
+temperature_degc = 30
+[[node]]
+id = "mixed"
+[[node]]
+id = "out"
+kind = "pressure_boundary"
+pressure_bar = 1
+[[three_way_valve]]
+id = "mixer"
+a = "warm"
+b = "cool"
+ab = "mixed"
+kvs_m3_h = 4
+opening = 1
+[[edge]]
+id = "rest"
+kind = "resistance"
+from = "mixed"
+to = "out"
+dp_nominal_bar = 0.5
+m_flow_nominal_kg_s = 0.5
+"#;
+
+#[test]
+fn a_three_way_valve_leaks_its_share() {
+    // 0.9 of 60 degC and 0.1 of 30 degC: 57 degC; without the leak 60 degC.
+    let mixed_degc = |effect: &str| {
+        let model = Model::from_toml(&format!("{MIXER}{effect}"), Path::new(".")).unwrap();
+        steady::solve(&model).unwrap().node("mixed").unwrap().t_k - 273.15
+    };
+    let leaky = mixed_degc("[[effect]]\nid = \"H8\"\ncomponent = \"mixer\"\nshare = 0.1\n");
+    assert!((mixed_degc("") - 60.0).abs() < 0.05, "{}", mixed_degc(""));
+    assert!((leaky - 57.0).abs() < 0.05, "{leaky}");
+}
+
+#[test]
+fn a_leak_follows_the_pressure() {
+    // 1 g/s at 1 bar is 1.5 g/s at 2.25 bar.
+    let text = PIPE.replace("pressure_bar = 1\n", "pressure_bar = 2.25\n");
+    let effect = "[[effect]]\nid = \"P11\"\ncomponent = \"out\"\nm_flow_kg_s = 0.001\n";
+    let leaky = Model::from_toml(&format!("{text}{effect}"), Path::new(".")).unwrap();
+    let lost = steady::solve(&leaky).unwrap().edge("out.leak").unwrap().m_flow_kg_s;
+    assert!((lost - 0.0015).abs() < 1e-9, "{lost}");
 }
 
 /// An example with one effect.

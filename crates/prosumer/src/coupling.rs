@@ -159,7 +159,8 @@ impl Coupling {
             }
         }
         for pivot in 0..self.points {
-            let diagonal = matrix[pivot][pivot];
+            let eliminated = matrix[pivot];
+            let diagonal = eliminated[pivot];
             let inflow = self.inflow_kg_s(pivot, flows);
             if diagonal <= LEAST_HOLD * inflow {
                 return Err(Undefined);
@@ -167,8 +168,9 @@ impl Coupling {
             for row in pivot + 1..self.points {
                 let factor = matrix[row][pivot] / diagonal;
                 if factor != 0.0 {
-                    for column in pivot..self.points {
-                        matrix[row][column] -= factor * matrix[pivot][column];
+                    for (value, other) in matrix[row][pivot..].iter_mut().zip(&eliminated[pivot..])
+                    {
+                        *value -= factor * other;
                     }
                     t_k[row] -= factor * t_k[pivot];
                 }

@@ -11,6 +11,7 @@ mod inlet_jet;
 mod insulation;
 mod leak;
 mod length;
+mod node_leak;
 mod parasitic_flow;
 mod part_load;
 mod pump_head;
@@ -20,6 +21,7 @@ mod storage_conductivity;
 mod storage_loss;
 mod suction;
 mod surroundings;
+mod three_way_leak;
 mod wall;
 
 use crate::effect::{EffectError, ModelChange};
@@ -48,5 +50,7 @@ anergy_core::registry! {
         Defrosting("G4", defrosting::Defrosting, defrosting::Defrosting),
         Auxiliary("G6", auxiliary::Auxiliary, auxiliary::Auxiliary),
         Fouling("X1", fouling::Fouling, fouling::Fouling),
+        ThreeWayLeak("H8", three_way_leak::ThreeWayLeak, three_way_leak::ThreeWayLeak),
+        NodeLeak("P11", node_leak::NodeLeak, node_leak::NodeLeak),
     }
 }

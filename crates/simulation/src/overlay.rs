@@ -4,7 +4,8 @@
 
 mod parameters;
 
-use crate::model::{DriverSpec, EdgeSpec, Model, Place};
+use crate::model::{DriverSpec, EdgeSpec, Model, NodeSpec, Place};
+use crate::model_file::NodeEntry;
 use anergy_network::elements::ElementParams;
 use serde_json::Value;
 use smol_str::{SmolStr, format_smolstr};
@@ -26,6 +27,11 @@ pub enum Change {
         parameter: String,
         /// Factor.
         factor: f64,
+    },
+    /// Adds a node.
+    InsertNode {
+        /// The node.
+        entry: Box<NodeEntry>,
     },
     /// Adds an edge between existing nodes (in parallel to what is there).
     InsertEdge {
@@ -120,6 +126,14 @@ impl Model {
             Change::Scale { parameter, factor } => self.change_parameter(parameter, |old| {
                 old.as_f64().map(|old| Value::from(old * factor))
             }),
+            Change::InsertNode { entry } => {
+                if self.nodes.iter().any(|node| node.entry.id == entry.id) {
+                    return Err(OverlayError::Taken { id: entry.id.to_string() });
+                }
+                let (site, place) = (SmolStr::default(), Place::default());
+                self.nodes.push(NodeSpec { entry: (**entry).clone(), site, place });
+                Ok(())
+            }
             Change::InsertEdge { id, from, to, params } => {
                 self.check_free(id)?;
                 self.edges.push(EdgeSpec {

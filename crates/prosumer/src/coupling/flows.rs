@@ -126,10 +126,11 @@ impl Coupling {
         mut inflow: [f64; MOST_POINTS],
     ) -> [f64; MOST_POINTS] {
         for pivot in (1..self.points).rev() {
+            let eliminated = matrix[pivot];
             for row in 1..pivot {
-                let factor = matrix[row][pivot] / matrix[pivot][pivot];
-                for column in 1..pivot {
-                    matrix[row][column] -= factor * matrix[pivot][column];
+                let factor = matrix[row][pivot] / eliminated[pivot];
+                for (value, other) in matrix[row][1..pivot].iter_mut().zip(&eliminated[1..]) {
+                    *value -= factor * other;
                 }
                 inflow[row] -= factor * inflow[pivot];
             }

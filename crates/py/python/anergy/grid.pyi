@@ -6703,6 +6703,55 @@ class _Effect:
         factor
             Conductance over what the data of the exchanger say; 1 changes nothing.
         """
+    def h8(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        share: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "H8".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        share
+            Share of the water that comes through the closed way; 0 changes nothing.
+        """
+    def p11(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        m_flow_kg_s: float | None = None,
+        m_flow_kg_min: float | None = None,
+        m_flow_kg_h: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "P11".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        m_flow_kg_s
+            Water that leaves at 1 bar above the atmosphere, kg/s; 0 changes nothing. Also m_flow_kg_min,
+            m_flow_kg_h.
+        """
 
 class Grid:
     def __init__(

@@ -12,13 +12,15 @@ use smol_str::SmolStr;
 /// Resistance of a branch with a pump over that of one without, where neither is said.
 const OF_PUMPED: f64 = 25.0;
 
+/// Branches that hang together, by the least of their points, with the ends of each.
+type Group<'m> = (usize, Vec<Planned<'m>>, Vec<(usize, usize)>);
 type Planned<'m> = (&'m CircuitSpec, &'m BranchSpec, PlannedCircuit);
 
 /// Points that belong together by some of the branches: the smallest number of each.
-fn united(points: usize, branches: impl Iterator<Item = (usize, usize)> + Clone) -> Vec<usize> {
+fn united(points: usize, branches: &[(usize, usize)]) -> Vec<usize> {
     let mut of: Vec<usize> = (0..points).collect();
     for _ in 0..points {
-        for (from, to) in branches.clone() {
+        for &(from, to) in branches {
             let least = of[from].min(of[to]);
             (of[from], of[to]) = (least, least);
         }
@@ -40,15 +42,13 @@ impl Builder<'_> {
             };
             ends.push((number(&branch.from), number(&branch.to)));
         }
-        let sound = branches.iter().fold(true, |sound, planned| {
-            // Every problem is told.
-            self.branch_is_sound(planned, &branches) && sound
-        });
-        if !sound {
+        // Every problem is told.
+        let unsound = branches.iter().filter(|planned| !self.branch_is_sound(planned, &branches));
+        if unsound.count() > 0 {
             return Vec::new();
         }
-        let coupling_of = united(names.len(), ends.iter().copied());
-        let mut couplings: Vec<(usize, Vec<Planned>, Vec<(usize, usize)>)> = Vec::new();
+        let coupling_of = united(names.len(), &ends);
+        let mut couplings: Vec<Group> = Vec::new();
         for (planned, (from, to)) in branches.into_iter().zip(ends) {
             let of = coupling_of[from];
             match couplings.iter_mut().find(|(known, ..)| *known == of) {
@@ -131,7 +131,8 @@ impl Builder<'_> {
             }
         }
         let passive = branches.iter().zip(ends).filter(|(planned, _)| !pumped(planned));
-        let joined = united(points.len(), passive.map(|(_, (from, to))| (of(*from), of(*to))));
+        let passive: Vec<_> = passive.map(|(_, (from, to))| (of(*from), of(*to))).collect();
+        let joined = united(points.len(), &passive);
         if let Some(apart) = joined.iter().position(|of| *of != 0) {
             let (a, b) = (names[points[0]], names[points[apart]]);
             let message = format!(
