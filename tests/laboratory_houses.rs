@@ -188,3 +188,25 @@ fn a_winter_day_in_the_ring() {
         }
     }
 }
+
+/// `LABORATORY=all`: a year of each house in steps of a minute, and the ring in steps of 1 s.
+#[test]
+fn a_year_of_each_house_and_the_ring_in_seconds() {
+    if std::env::var("LABORATORY").is_err() {
+        println!("LABORATORY is not set: years are not run");
+        return;
+    }
+    for house in HOUSES {
+        let begin = std::time::Instant::now();
+        runs_alone(house, 365.0);
+        println!("{house}: a year in {:.1} s, read every step", begin.elapsed().as_secs_f64());
+    }
+    for file in ["model.toml", "island.toml"] {
+        let begin = std::time::Instant::now();
+        let simulation = ring(file, 1.0);
+        println!("{file}: a day in {:.1} s", begin.elapsed().as_secs_f64());
+        for house in HOUSES {
+            assert_eq!(discomfort(&simulation, house), (0.0, 0.0), "{file} {house}");
+        }
+    }
+}
