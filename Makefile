@@ -101,6 +101,7 @@ SCORE ?= target/hidden-effects-$(SEED)
 explain-score: .venv-score/.installed ## What explain finds in data with a hidden effect: 200 cases, table in docs (SEED, DRAWS)
 	cargo build --release -p anergy
 	for rig in R1 R3; do \
+		.venv-score/bin/python tests/hidden_effects/twin.py $(SCORE) --rig $$rig && \
 		.venv-score/bin/python tests/hidden_effects/cases.py $(SCORE) --rig $$rig --seed $(SEED) --draws $(DRAWS) || exit 1; done
 	.venv-score/bin/python tests/hidden_effects/score.py $(SCORE) --out docs/src/validation/explain.md \
 		--engine "$$(git rev-parse --short HEAD)"

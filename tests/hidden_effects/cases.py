@@ -18,7 +18,7 @@ import broken
 from detect import Look, shifted, slow, stratum
 from sensors import ROOT3, draw, measure, spoil
 
-RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
+RIGS = {"R1": "rig1", "R3": "rig3"}
 # Range of the expected gain in log-likelihood that is aimed at.
 STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
 # Nats within which two effects are not told apart, and cosine of their signatures.

@@ -40,7 +40,7 @@ def draw(rng, rich):
     lengths = {"stub1": rng.uniform(4, 9), "line12": rng.uniform(35, 60), "stub2": rng.uniform(4, 9), "line23": rng.uniform(15, 30)}
     pipes = [dict(name=n, length=float(np.round(lengths[n], 1)), inner=float(inner), outer=float(np.round(inner + 2 * rng.uniform(0.0012, 0.003), 4)),
                   resistance=float(np.round(rng.uniform(2.5, 6), 2)), roughness=1e-5, wall=wall and n.startswith("line")) for n, _, _ in PIPES]
-    speeds = {1: rng.uniform(0.85, 1.0, BLOCKS), 2: rng.uniform(0.8, 0.92, BLOCKS)}
+    speeds = {1: rng.uniform(0.85, 0.97, BLOCKS), 2: rng.uniform(0.8, 0.92, BLOCKS)}
     off = {1: [1, 6, 11] if rng.random() < 0.6 else [], 2: [3, 5, 8]}  # validate, identify, show; and others
     return dict(pipes=pipes, rich=rich, speeds=speeds, off=off, kappa=rng.uniform(0.4, 0.9, BLOCKS), head=float(np.round(rng.uniform(350, 500))),
                 free=float(np.round(rng.uniform(45, 60))), kvs=float(np.round(rng.uniform(2.5, 4.0), 2)), around=float(np.round(rng.uniform(8, 16), 1)),

@@ -3,10 +3,11 @@
     python score.py CASES --anergy target/release/anergy --out docs/src/validation/explain.md
 
 Cases of seeds from 1 000 000 on are for scores that are reported; how often they were scored is counted in reported.csv.
-Restartable: a case with a result (CASES/results/NAME.json) is not run again. Only this program reads CASES/answers.json.
+Restartable: a case with a result of this engine (CASES/results-HASH/NAME.json) is not run again. Only this program reads CASES/answers.json.
 """
 
 import argparse
+import hashlib
 import json
 import subprocess
 import time
@@ -60,7 +61,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("cases", type=Path)
     parser.add_argument("--anergy", type=Path, default=Path("target/release/anergy"))
-    parser.add_argument("--results", default="results", help="name of the folder in CASES")
+    parser.add_argument("--results", help="name of the folder in CASES; default: after the engine, so that another one answers anew")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--parallel", type=int, default=1, help="cases at once; explain itself uses all cores")
     parser.add_argument("--limit-s", type=float, default=180)
@@ -69,7 +70,8 @@ def main():
     parser.add_argument("--note", default="", help="a sentence more at the head of the page")
     parser.add_argument("--engine", default="", help="revision of anergy, for the count")
     wanted = parser.parse_args()
-    results = wanted.cases / wanted.results
+    of_engine = f"results-{hashlib.sha256(wanted.anergy.read_bytes()).hexdigest()[:8]}"
+    results = wanted.cases / (wanted.results or of_engine)
     results.mkdir(exist_ok=True)
     answers = json.loads((wanted.cases / "answers.json").read_text())
     cases = [wanted.cases / name for name in answers if name.startswith(wanted.only)]

@@ -112,6 +112,8 @@ def measure(sensor, y, at_s, rng, clock_s=0.0, effect=None):
     if sensor.kind == "kg_s":
         x = np.where(np.interp(times, np.arange(y.size), y) < 1e-6, 0.0, x)  # low-flow cut-off
         x = np.maximum(x, 0.0)
+    if sensor.kind == "1":
+        x = np.maximum(x, 0.0)  # commands
     factor, offset = UNITS[sensor.unit]
     x = x * factor + offset
     if sensor.quantisation:
