@@ -35,7 +35,8 @@ python: $(VENV)/.installed ## Build the Python package into a private environmen
 	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --quiet -m crates/py/Cargo.toml
 
 test-python: python ## Python tests, stub check and examples
-	$(BIN)/python -m pytest -q crates/py
+	cargo build --workspace --bin anergy
+	ANERGY_PROGRAM=$(CURDIR)/target/debug/anergy $(BIN)/python -m pytest -q crates/py
 	$(BIN)/python -m mypy.stubtest anergy --mypy-config-file crates/py/pyproject.toml
 	$(BIN)/python -m mypy --config-file crates/py/pyproject.toml crates/py/python/anergy crates/py/tests/typed_use.py
 	$(BIN)/python examples/three-houses/run.py
@@ -67,6 +68,7 @@ validate: ## Slow cases, peers, large random sets
 		cargo test --release -p anergy-tests \
 		--test every_element --test random_networks --test robustness --test destest \
 		--test openmodelica_heat --test ait_pongau --test ulg_pipe --test building --test rse_facility --test weighted_pi --test hunting --test hunting_random --test storage_charging --test ambient_day --test laboratory_houses --test explain_liege -- --nocapture
+	$(MAKE) bench-ensemble
 
 .venv-learn/.installed:
 	$(PYTHON) -m venv .venv-learn

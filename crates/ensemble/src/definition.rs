@@ -140,7 +140,7 @@ impl Definition {
                 "how many samples are drawn",
             ),
             (true, Some(0)) => {
-                report(&["members"], "ensemble: members = 0 is no ensemble".into(), "at least 1")
+                report(&["members"], "ensemble: members = 0 is no ensemble".into(), "at least 1");
             }
             (false, Some(_)) => {
                 let hint = "it is for monte_carlo and latin_hypercube; others have as many as their values make";

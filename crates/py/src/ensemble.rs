@@ -3,6 +3,7 @@
 use crate::convert;
 use crate::errors::{self, Origin};
 use crate::model::Model;
+use anergy_core::clock::Time;
 use anergy_ensemble::definition::{Definition, schema};
 use anergy_ensemble::ensemble::{Ensemble, EnsembleError, all_threads};
 use anergy_ensemble::member::Outcome;
@@ -256,13 +257,13 @@ impl PyMembers {
     fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let options = self.ensemble.options();
         let dict = PyDict::new(py);
-        dict.set_item("until_s", options.until.map(|time| time.as_s()))?;
+        dict.set_item("until_s", options.until.map(Time::as_s))?;
         match options.step {
             Some(StepEntry::Fixed(step)) => dict.set_item("step_s", step.0.as_s())?,
             Some(StepEntry::Automatic) => dict.set_item("step_s", "auto")?,
             None => {}
         }
-        dict.set_item("record_s", options.record.map(|time| time.as_s()))?;
+        dict.set_item("record_s", options.record.map(Time::as_s))?;
         Ok(dict)
     }
 

@@ -88,3 +88,14 @@ def test_controllers_page():
     result = run(ROOT / "docs/src/controllers.md", names)["result"]
     for site in ("sf1", "sf2"):
         assert result[f"{site}.feed_in_pump.m_flow_kg_s"][-1] == pytest.approx(0.05, abs=1e-4)
+
+
+@pytest.mark.parametrize("page", ["ensembles", "learning"])
+def test_pages_begin_with_what_works(page, tmp_path):
+    """Their later blocks need a cluster, or go on from what is in the text."""
+    if page == "learning":
+        pytest.importorskip("gymnasium")
+    path = ROOT / f"docs/src/{page}.md"
+    _, code, _ = next(iter(blocks(path)))
+    exec(compile(code, str(path), "exec"), {})
+    assert page == "learning" or (tmp_path / "flow.png").exists()
