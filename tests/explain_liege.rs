@@ -122,6 +122,9 @@ fn explained(files: &[&str], split: Option<&str>) -> Option<Explanation> {
             );
         }
     }
+    for (name, value, far) in &explanation.strained {
+        println!("  {name} = {value:.4}, {far:.1} standard deviations from its middle");
+    }
     for gap in &explanation.gaps {
         println!(
             "  {} {:?} {:8} {:5}: {:.3} -> {:.3} {}, z {:.1} -> {:.1}",

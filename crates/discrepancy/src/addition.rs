@@ -9,8 +9,17 @@ const MARK: &str = "# added by anergy explain";
 
 /// The model file with the effects appended; those of sensors belong to the sensor file and are left out.
 pub fn added(text: &str, effects: &[Finding], because: &str) -> String {
+    appended(text, effects.iter().filter(|effect| !effect.of_sensor()), because)
+}
+
+/// The sensor file with the effects of sensors appended.
+pub fn added_to_sensors(text: &str, effects: &[Finding], because: &str) -> String {
+    appended(text, effects.iter().filter(|effect| effect.of_sensor()), because)
+}
+
+fn appended<'a>(text: &str, effects: impl Iterator<Item = &'a Finding>, because: &str) -> String {
     let mut text = text.to_owned();
-    for effect in effects.iter().filter(|effect| !effect.of_sensor()) {
+    for effect in effects {
         let (id, component) = (effect.id, toml_string(&effect.component));
         let (field, because) = (effect.parameter, toml_string(because));
         let number = |x: f64| {
@@ -73,11 +82,34 @@ mod tests {
             beside: vec![("lag_s", 3.0)],
             probability: 1.0,
             evidence: 9.0,
+            elpd: 9.0,
+            elpd_error: 1.0,
+            flags: Vec::new(),
             strain: 0.0,
             beyond: 0.0,
             validation_z: 1.0,
+            reduction: 0.9,
             separates: "",
         }
+    }
+
+    #[test]
+    fn an_effect_of_a_sensor_goes_to_the_sensor_file() {
+        let plain =
+            "[[sensor]]\ncolumn = \"T\"\nsignal = \"b.t_k\"\nunit = \"degC\"\nrole = \"compare\"\n";
+        let slow = Finding { parameter: "lag_s", beside: Vec::new(), ..finding("S4", "T") };
+        assert_eq!(added(plain, std::slice::from_ref(&slow), ""), plain);
+        let text = added_to_sensors(plain, &[slow], "why");
+        let file = crate::sensors::SensorFile::from_toml(&text).unwrap();
+        assert_eq!((file.effect[0].id.as_str(), file.effect[0].lag_s), ("S4", Some(1.2346)));
+        assert_eq!(reverted(&text, "S4").unwrap(), plain);
+        // A sensor that is not there.
+        assert!(
+            crate::sensors::SensorFile::from_toml(
+                &text.replace("component = \"T\"", "component = \"X\"")
+            )
+            .is_err()
+        );
     }
 
     #[test]

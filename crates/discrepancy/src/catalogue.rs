@@ -80,6 +80,22 @@ impl Candidate {
         self
     }
 
+    /// A coordinate with the strength of the effect times `a`.
+    pub(crate) fn scaled(&self, coordinate: f64, a: f64) -> f64 {
+        let unknown = &self.unknown;
+        let middle = match (self.tolerance, unknown.logarithmic) {
+            (Some((middle, _)), _) => middle,
+            (None, false) => unknown.mean,
+            // A factor is neutral at 1.
+            (None, true) if self.parameter.0.ends_with("factor") => 0.0,
+            // Any other strength that spans decades at 0.
+            (None, true) => {
+                return (coordinate + a.max(1e-3).ln()).max(unknown.mean - 3.0 * unknown.sd);
+            }
+        };
+        middle + a * (coordinate - middle)
+    }
+
     /// How far a fitted coordinate lies outside of what is plausible without the effect or, where there is no
     /// tolerance, of the range of the effect; in standard deviations.
     pub fn strain(&self, coordinate: f64) -> f64 {
@@ -103,7 +119,9 @@ pub(crate) fn sensed(experiment: &Experiment, si: &str) -> bool {
 /// Whether the model has the effect already.
 pub(crate) fn has(experiment: &Experiment, id: &str, component: &str) -> bool {
     let mut effects = experiment.model.effects.iter();
+    let mut of_sensors = experiment.sensors.effect.iter();
     effects.any(|effect| effect.params.kind() == id && effect.component == component)
+        || of_sensors.any(|effect| effect.id == id && effect.component == component)
 }
 
 /// Quantities that are always uncertain.

@@ -26,6 +26,27 @@ impl Track {
         let share = (time_s - t[i - 1]) / (t[i] - t[i - 1]);
         y[i - 1] + share * (y[i] - y[i - 1])
     }
+
+    /// The cubic through the readings with slopes of their neighbours (Catmull and Rom): a straight line cuts the corners of
+    /// a front, which looks like a front that the plant has blurred. Linear where readings are missing.
+    pub fn smooth_at(&self, time_s: f64) -> f64 {
+        let (t, y) = (&self.time_s, &self.value);
+        let i = t.partition_point(|x| *x <= time_s);
+        if i < 2 || i + 1 >= t.len() {
+            return self.at(time_s);
+        }
+        let h = t[i] - t[i - 1];
+        if t[i + 1] - t[i] > 2.0 * h
+            || t[i - 1] - t[i - 2] > 2.0 * h
+            || h > 2.0 * (t[i - 1] - t[i - 2])
+        {
+            return self.at(time_s);
+        }
+        let slope = |k: usize| (y[k + 1] - y[k - 1]) / (t[k + 1] - t[k - 1]);
+        let (a, b, s) = (slope(i - 1) * h, slope(i) * h, (time_s - t[i - 1]) / h);
+        let rise = y[i] - y[i - 1];
+        y[i - 1] + s * (a + s * ((3.0 * rise - 2.0 * a - b) + s * (a + b - 2.0 * rise)))
+    }
 }
 
 /// One run: an uninterrupted measurement.
@@ -104,6 +125,13 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
     if runs.is_empty() {
         return Err(wrong("it has no rows".into()));
     }
+    for run in &mut runs {
+        for (track, sensor) in run.tracks.iter_mut().zip(&sensors.sensor) {
+            if sensor.si() == "k" {
+                *track = without_held(track, sensor.difference_to_si(sensor.quantisation));
+            }
+        }
+    }
     for run in &runs {
         for (track, sensor) in run.tracks.iter().zip(&sensors.sensor) {
             if track.value.is_empty() {
@@ -116,6 +144,30 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
         }
     }
     Ok(runs)
+}
+
+/// Readings that hold before one isolated jump were held by the logger: all but the first of them are missing.
+const HELD: usize = 3;
+/// A jump is this many times the resolution, and at least so large, K.
+const JUMP: (f64, f64) = (10.0, 0.5);
+
+/// A temperature without the readings that a logger has held.
+fn without_held(track: &Track, resolution_k: f64) -> Track {
+    let (t, y) = (&track.time_s, &track.value);
+    let least = (JUMP.0 * resolution_k).max(JUMP.1);
+    let mut kept = Track { time_s: Vec::new(), value: Vec::new() };
+    let mut from = 0;
+    while from < y.len() {
+        let end = (from..y.len()).find(|&i| y[i] != y[from]).unwrap_or(y.len());
+        let jump = y.get(end).map_or(0.0, |next| (next - y[from]).abs());
+        let goes_on = y.get(end + 1).map_or(0.0, |next| (next - y[end]).abs());
+        let held = end - from >= HELD && jump > least && goes_on < 0.3 * jump;
+        let until = if held { from + 1 } else { end };
+        kept.time_s.extend(&t[from..until]);
+        kept.value.extend(&y[from..until]);
+        from = end;
+    }
+    kept
 }
 
 #[cfg(test)]
@@ -136,6 +188,36 @@ mod tests {
         assert_eq!(runs[0].tracks[0].time_s, [0.0, 20.0]);
         assert_eq!(runs[0].tracks[0].at(10.0), 294.15);
         assert_eq!(runs[1].tracks[0].at(99.0), 303.15);
+    }
+
+    #[test]
+    fn held_readings_are_missing_and_steps_are_not() {
+        let track = |value: &[f64]| Track {
+            time_s: (0..value.len()).map(|i| i as f64).collect(),
+            value: value.to_vec(),
+        };
+        // Rising, held at 22, and back on its way at 27.
+        let held = without_held(&track(&[20.0, 21.0, 22.0, 22.0, 22.0, 22.0, 27.0, 28.0]), 0.1);
+        assert_eq!(held.value, [20.0, 21.0, 22.0, 27.0, 28.0]);
+        assert_eq!(held.time_s, [0.0, 1.0, 2.0, 6.0, 7.0]);
+        // A plateau before a front, and one of the resolution.
+        for plain in [
+            &[20.0, 20.0, 20.0, 20.0, 25.0, 30.0, 35.0],
+            &[20.0, 20.0, 20.0, 20.0, 20.1, 20.1, 20.2],
+        ] {
+            assert_eq!(without_held(&track(plain), 0.1), track(plain));
+        }
+    }
+
+    #[test]
+    fn a_parabola_is_met_between_its_readings() {
+        let t: Vec<f64> = [0.0, 1.0, 2.0, 3.0, 4.0, 9.0].to_vec();
+        let track = Track { value: t.iter().map(|t| t * t).collect(), time_s: t };
+        assert!((track.smooth_at(2.5) - 6.25).abs() < 1e-12);
+        // At the end and before a gap it is straight.
+        assert_eq!(track.smooth_at(0.5), 0.5);
+        assert_eq!(track.smooth_at(3.5), track.at(3.5));
+        assert_eq!(track.smooth_at(6.5), track.at(6.5));
     }
 
     #[test]

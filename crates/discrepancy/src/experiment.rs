@@ -1,11 +1,11 @@
 //! The model under the measured inputs: what every compared sensor should have read.
 //!
-//! **Equation** a sensor reads `y(t) = g x(t + delta) + b` of its quantity `x`, behind a first-order lag where it has
-//! one. Measured inputs drive their signals with `x = (y - b)/g`. A temperature of a step is its mean and
+//! Measured inputs drive their signals with what is behind their readings by the response of the sensor. A temperature of a step is its mean and
 //! belongs to its middle; the water of a run begins at the mean of the temperatures that are read first.
 
 use crate::data::{Run, Track};
 use crate::error::ExplainError;
+use crate::response::{Response, lagged};
 use crate::sensors::{Accuracy, Role, SensorFile};
 use crate::unknown::{Target, Unknown};
 use anergy_core::clock::Time;
@@ -33,6 +33,7 @@ pub struct Sample {
 }
 
 /// Model, measurements and sensors together.
+#[derive(Clone)]
 pub struct Experiment {
     /// The model.
     pub model: Model,
@@ -120,37 +121,46 @@ impl Experiment {
     /// # Errors
     /// What keeps the model from running.
     pub fn readings(&self, unknowns: &[Unknown], at: &[f64]) -> Result<Vec<f64>, ExplainError> {
-        self.readings_in_steps(unknowns, at, 1)
+        Ok(self.observed(&self.simulated(unknowns, at, 1)?, unknowns, at))
     }
 
-    /// The same in steps that are so many times shorter.
+    /// Every compared quantity, before the sensors; in steps that are so many times shorter.
     ///
     /// # Errors
     /// What keeps the model from running.
-    pub fn readings_in_steps(
+    pub fn simulated(
         &self,
         unknowns: &[Unknown],
         at: &[f64],
         finer: i64,
-    ) -> Result<Vec<f64>, ExplainError> {
+    ) -> Result<Simulated, ExplainError> {
         let model = self.with_effects(unknowns, at);
         let step = Time(self.step.0 / finer);
+        let run = |index| self.simulate(&model, index, step, unknowns, at);
+        Ok(Simulated((0..self.runs.len()).map(run).collect::<Result<_, _>>()?))
+    }
+
+    /// What the sensors make of a simulation.
+    pub fn observed(&self, simulated: &Simulated, unknowns: &[Unknown], at: &[f64]) -> Vec<f64> {
         let mut readings = Vec::with_capacity(self.samples.len());
-        for (index, run) in self.runs.iter().enumerate() {
-            let tracks = self.simulate(&model, index, step, unknowns, at)?;
+        for (run, tracks) in self.runs.iter().zip(&simulated.0) {
             for (sensor, track) in
                 tracks.iter().enumerate().filter(|(_, track)| !track.time_s.is_empty())
             {
-                let offsets = self.of_sensor(sensor, unknowns, at);
-                let lag_s = self.sensors.sensor[sensor].lag_s + offsets.lag_s;
-                let behind = lagged(track, lag_s);
+                let response = self.response(sensor, unknowns, at);
+                let behind = lagged(track, self.sensors.sensor[sensor].lag_s + response.lag_s);
                 let times = run.tracks[sensor].time_s.iter();
                 readings.extend(
-                    times.map(|t| offsets.gain * behind.at(t + offsets.clock_s) + offsets.bias),
+                    times.map(|t| response.of(behind.at(t + response.clock_s), *t, run.span_s)),
                 );
             }
         }
-        Ok(readings)
+        readings
+    }
+
+    /// Whether another value of it needs another simulation.
+    pub fn is_simulated(&self, target: &Target) -> bool {
+        target.sensor().is_none_or(|i| self.sensors.sensor[i].role == Role::Input)
     }
 
     /// Mean of the temperatures that a run reads first, and how far they lie from it, K.
@@ -201,11 +211,20 @@ impl Experiment {
         for (i, sensor) in self.sensors.sensor.iter().enumerate() {
             let track = &run.tracks[i];
             if sensor.role == Role::Input {
-                let offsets = self.of_sensor(i, unknowns, at);
+                let response = self.response(i, unknowns, at);
+                let is_flow = ["kg_s", "m3_s"].contains(&sensor.si().as_str());
                 // A step takes its signals as they are at its end; of a measured quantity its middle counts.
                 let measured = |k: usize| {
-                    let middle_s = (k as f64 - 0.5).max(0.0) * step.as_s();
-                    (track.at(begin_s + middle_s - offsets.clock_s) - offsets.bias) / offsets.gain
+                    let time_s =
+                        begin_s + (k as f64 - 0.5).max(0.0) * step.as_s() - response.clock_s;
+                    let reading =
+                        if sensor.si() == "k" { track.smooth_at(time_s) } else { track.at(time_s) };
+                    // A flow meter that reads nothing has cut off a flow too small for it.
+                    if is_flow && reading == 0.0 {
+                        0.0
+                    } else {
+                        response.before(reading, time_s, run.span_s)
+                    }
                 };
                 model.drivers.retain(|driver| driver.signal != sensor.signal);
                 model.drivers.push(DriverSpec {
@@ -251,63 +270,29 @@ impl Experiment {
         Ok(tracks)
     }
 
-    fn of_sensor(&self, sensor: usize, unknowns: &[Unknown], at: &[f64]) -> Offsets {
-        let mut offsets = Offsets { bias: 0.0, gain: 1.0, lag_s: 0.0, clock_s: 0.0 };
-        for (unknown, coordinate) in unknowns.iter().zip(at) {
-            let value = unknown.value(*coordinate);
-            match unknown.target {
-                Target::Bias(i) if i == sensor => offsets.bias += value,
-                Target::Gain(i) if i == sensor => offsets.gain *= value,
-                Target::Lag(i) if i == sensor => offsets.lag_s += value,
-                Target::Clock(i) if i == sensor => offsets.clock_s += value,
-                _ => {}
+    fn response(&self, sensor: usize, unknowns: &[Unknown], at: &[f64]) -> Response {
+        let mut response = Response::default();
+        let column = &self.sensors.sensor[sensor].column;
+        for effect in self.sensors.effect.iter().filter(|effect| effect.component == *column) {
+            for (flaw, value) in effect.flaws(sensor) {
+                response.take(&flaw, value);
             }
         }
-        offsets
+        for (unknown, coordinate) in unknowns.iter().zip(at) {
+            if unknown.target.sensor() == Some(sensor) {
+                response.take(&unknown.target, unknown.value(*coordinate));
+            }
+        }
+        response
     }
 }
 
-/// What a sensor makes of its quantity.
-struct Offsets {
-    bias: f64,
-    gain: f64,
-    lag_s: f64,
-    clock_s: f64,
-}
+/// Compared quantities of every run and sensor, before the sensors.
+#[derive(Debug, Clone, Default)]
+pub struct Simulated(Vec<Vec<Track>>);
 
 /// The SI suffix of a quantity's name.
 fn suffix(quantity: &str) -> &str {
     let ends = |si: &&&str| quantity.strip_suffix(**si).is_some_and(|rest| rest.ends_with('_'));
     anergy_core::units::SI_SUFFIXES.iter().find(ends).copied().unwrap_or("")
-}
-
-/// Behind a first-order lag: exact for a quantity that is straight between its points.
-fn lagged(track: &Track, lag_s: f64) -> Track {
-    if lag_s <= 0.0 {
-        return track.clone();
-    }
-    let mut value = Vec::with_capacity(track.value.len());
-    value.push(track.value[0]);
-    for i in 1..track.value.len() {
-        let dt = track.time_s[i] - track.time_s[i - 1];
-        let slope = (track.value[i] - track.value[i - 1]) / dt;
-        // y follows x = x0 + s t: y = x - s tau + (y0 - x0 + s tau) exp(-t/tau).
-        let rest = value[i - 1] - track.value[i - 1] + slope * lag_s;
-        value.push(track.value[i] - slope * lag_s + rest * (-dt / lag_s).exp());
-    }
-    Track { time_s: track.time_s.clone(), value }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_lag_by_hand() {
-        // A ramp of 1 K/s behind 10 s, after 10 s: 10 - 10 (1 - 1/e) = 3.6788 K.
-        let times: Vec<f64> = (0..=10).map(f64::from).collect();
-        let ramp = Track { value: times.clone(), time_s: times };
-        assert!((lagged(&ramp, 10.0).value[10] - 3.678_794).abs() < 1e-6);
-        assert_eq!(lagged(&ramp, 0.0), ramp);
-    }
 }

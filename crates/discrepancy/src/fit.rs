@@ -1,19 +1,21 @@
 //! The most probable values of the unknowns, and how well the data speak for a set of them.
 //!
 //! **Equation** minimise `F = sum e^2 + sum ((x - mean)/sd)^2` over the coordinates `x`, by Levenberg-Marquardt
-//! with forward differences, renewed at the end and in between corrected by Broyden's rule. `e` are the residuals
+//! with forward differences, in between corrected by Broyden's rule. `e` are the residuals
 //! `z = (y - yhat)/sigma`, whitened ([`Noise`]). The logarithm of the evidence (Laplace) is
 //! `-F/2 - log det(I + S J^T J S)/2`, `J` the sensitivities of `e`, `S = diag(sd)`, but for a constant of the data.
 //!
-//! **Assumptions** what a model that is nearly right leaves behind is correlated from sample to sample and may be larger
-//! than the noise of the sensor; as if each sample were new, small flaws would speak far too loudly. It is an
-//! autoregressive process of first order, by sensor and run: `e_i = (z_i - r z_{i-1})/s`.
+//! **Numerics** one simulation per unknown and round of sensitivities is what costs. Flaws of compared sensors need none.
+//! Sensitivities that another fit has found near by ([`Slopes`]) are a start that Broyden's rule corrects; a thorough fit
+//! renews all of them at its end.
 //!
 //! **Sources** Laplace's method: MacKay 2003, chapter 27 (key `mackay2003`).
 
+use crate::cores::on_all_cores;
 use crate::error::ExplainError;
-use crate::experiment::Experiment;
-use crate::unknown::{Estimate, Unknown};
+use crate::experiment::{Experiment, Simulated};
+use crate::noise::{Gain, Noise, Residual, whitened};
+use crate::unknown::{Estimate, Target, Unknown};
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
 
@@ -27,79 +29,61 @@ const ENOUGH: f64 = 0.05;
 /// Coordinates stay within so many standard deviations of their prior.
 const BOUND_SD: f64 = 6.0;
 
+/// Change of all readings with the coordinate of an unknown, SI.
+pub type Slopes = HashMap<Target, Vec<f64>>;
+
 /// What is fitted to: uncertainty of every sample, and the samples that count.
 pub struct Likelihood {
     /// Standard deviation of every sample, SI.
     pub sigma: Vec<f64>,
     /// The samples that are fitted.
     pub fitted: Vec<usize>,
-    /// What a nearly right model leaves behind, by run and sensor.
-    pub noise: HashMap<(usize, usize), Noise>,
-}
-
-/// Residuals as an autoregressive process of first order.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
-    /// Correlation from sample to sample.
-    pub correlation: f64,
-    /// Standard deviation of what is new in a sample, over sigma.
-    pub innovation: f64,
-}
-
-impl Noise {
-    /// As the sensors promise: every sample is new.
-    pub const WHITE: Self = Self { correlation: 0.0, innovation: 1.0 };
+    /// What a nearly right model leaves behind; empty: every sample is new.
+    pub filter: Vec<Gain>,
+    /// The likelihood is taken to the power of one over this.
+    pub temperature: f64,
 }
 
 impl Likelihood {
+    /// Residuals over sigma of all samples.
+    pub fn z(&self, experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
+        let samples = experiment.samples.iter().zip(readings).zip(&self.sigma);
+        samples.map(|((sample, y), sigma)| (sample.value - y) / sigma).collect()
+    }
+
+    /// Root mean square of the residuals over sigma of some samples.
+    pub fn rms(&self, experiment: &Experiment, readings: &[f64], samples: &[usize]) -> f64 {
+        let square =
+            |&i: &usize| ((experiment.samples[i].value - readings[i]) / self.sigma[i]).powi(2);
+        (samples.iter().map(square).sum::<f64>() / samples.len().max(1) as f64).sqrt()
+    }
+
     /// Residuals over sigma, or their sensitivities, of all fitted samples, whitened.
-    fn whitened(&self, experiment: &Experiment, z: impl Fn(usize) -> f64) -> DVector<f64> {
-        let mut before = None;
-        let e = self.fitted.iter().map(|&i| {
-            let group = (experiment.samples[i].run, experiment.samples[i].sensor);
-            let Noise { correlation: r, innovation } =
-                self.noise.get(&group).copied().unwrap_or(Noise::WHITE);
-            let here = z(i);
-            let e = match before {
-                Some((j, last)) if j + 1 == i && self.same(experiment, j, i) => here - r * last,
-                // Of the first one all is new.
-                _ => here * (1.0 - r * r).sqrt(),
-            };
-            before = Some((i, here));
-            e / innovation
-        });
-        DVector::from_iterator(self.fitted.len(), e)
-    }
-
-    fn same(&self, experiment: &Experiment, i: usize, j: usize) -> bool {
-        let (a, b) = (&experiment.samples[i], &experiment.samples[j]);
-        (a.run, a.sensor) == (b.run, b.sensor)
-    }
-
-    /// What these readings leave behind. At least as much as the sensors promise.
-    pub fn noise_of(
-        &self,
-        experiment: &Experiment,
-        readings: &[f64],
-    ) -> HashMap<(usize, usize), Noise> {
-        let z = |i: usize| (experiment.samples[i].value - readings[i]) / self.sigma[i];
-        let mut sums: HashMap<(usize, usize), [f64; 4]> = HashMap::new();
-        for pair in self.fitted.windows(2).filter(|pair| pair[1] == pair[0] + 1) {
-            if self.same(experiment, pair[0], pair[1]) {
-                let (a, b) = (z(pair[0]), z(pair[1]));
-                let sample = &experiment.samples[pair[0]];
-                let sums = sums.entry((sample.run, sample.sensor)).or_default();
-                for (sum, term) in sums.iter_mut().zip([a * a, b * b, a * b, 1.0]) {
-                    *sum += term;
-                }
-            }
+    pub fn whitened(&self, z: impl Fn(usize) -> f64) -> DVector<f64> {
+        let cold = 1.0 / self.temperature.sqrt();
+        let values = self.fitted.iter().map(|&i| z(i));
+        if self.filter.is_empty() {
+            return DVector::from_iterator(self.fitted.len(), values.map(|z| cold * z));
         }
-        let noise = |[aa, bb, ab, n]: [f64; 4]| {
-            let r = (ab / (aa * bb).sqrt().max(1e-300)).clamp(0.0, 1.0 - 4.0 / n.max(5.0));
-            let new = ((bb - 2.0 * r * ab + r * r * aa) / n).max(0.0).sqrt();
-            Noise { correlation: r, innovation: new.max((1.0 - r * r).sqrt()) }
+        let values = self.fitted.iter().map(|&i| z(i) * self.sigma[i]);
+        let new = whitened(&self.filter, values).map(|e| cold * e);
+        DVector::from_iterator(self.fitted.len(), new)
+    }
+
+    /// Takes what these readings leave behind for what every nearly right model does.
+    pub fn learn(&mut self, experiment: &Experiment, readings: &[f64]) {
+        let of = |&i: &usize| {
+            let sample = &experiment.samples[i];
+            let (value, sigma) = (sample.value - readings[i], self.sigma[i]);
+            ((sample.run, sample.sensor), Residual { time_s: sample.time_s, value, sigma })
         };
-        sums.into_iter().map(|(group, sums)| (group, noise(sums))).collect()
+        let all: Vec<_> = self.fitted.iter().map(of).collect();
+        let mut filter = Vec::with_capacity(all.len());
+        for group in all.chunk_by(|a, b| a.0 == b.0) {
+            let residuals: Vec<Residual> = group.iter().map(|(_, r)| *r).collect();
+            filter.extend(Noise::of(&residuals).gains(&residuals));
+        }
+        self.filter = filter;
     }
 }
 
@@ -110,18 +94,24 @@ pub struct Fit {
     pub at: Vec<f64>,
     /// Readings there, all samples.
     pub readings: Vec<f64>,
+    /// Whitened residuals of the fitted samples.
+    pub e: DVector<f64>,
     /// Logarithm of the evidence, but for a constant.
     pub log_evidence: f64,
     /// Covariance of the coordinates.
     pub covariance: DMatrix<f64>,
     /// Sensitivities of the whitened readings, fitted samples by unknowns.
     pub sensitivity: DMatrix<f64>,
+    /// Sensitivities that were simulated last.
+    pub slopes: Slopes,
+    /// Quantities there, before the sensors.
+    pub simulated: Simulated,
 }
 
 impl Fit {
-    /// Value of an unknown with its 95 % interval.
-    pub fn estimate(&self, unknowns: &[Unknown], i: usize) -> Estimate {
-        let half = 1.96 * self.covariance[(i, i)].max(0.0).sqrt();
+    /// Value of an unknown with its 95 % interval; at least as wide as this standard deviation says.
+    pub fn estimate(&self, unknowns: &[Unknown], i: usize, least_sd: f64) -> Estimate {
+        let half = 1.96 * self.covariance[(i, i)].max(0.0).sqrt().max(least_sd);
         let value = |x: f64| unknowns[i].value(x);
         Estimate {
             value: value(self.at[i]),
@@ -129,16 +119,40 @@ impl Fit {
             hi: value(self.at[i] + half),
         }
     }
+
+    /// Whether an unknown sticks to the bound of its range.
+    pub fn at_bound(&self, unknowns: &[Unknown], i: usize) -> bool {
+        (self.at[i] - unknowns[i].mean).abs() > 0.999 * BOUND_SD * unknowns[i].sd
+    }
+}
+
+/// How a fit goes about it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Care {
+    /// Sensitivities that are known already are corrected only by what the steps show.
+    Quick,
+    /// All sensitivities are renewed at the end.
+    Thorough,
+    /// The same, on all cores.
+    Alone,
 }
 
 struct Point {
+    simulated: Simulated,
     readings: Vec<f64>,
     /// Whitened residuals.
     e: DVector<f64>,
     objective: f64,
 }
 
-/// Fits the unknowns.
+struct Problem<'a> {
+    experiment: &'a Experiment,
+    unknowns: &'a [Unknown],
+    likelihood: &'a Likelihood,
+    care: Care,
+}
+
+/// Fits the unknowns; `known` are sensitivities found near by.
 ///
 /// # Errors
 /// What keeps the model from running.
@@ -146,27 +160,28 @@ pub fn fit(
     experiment: &Experiment,
     unknowns: &[Unknown],
     likelihood: &Likelihood,
+    known: &Slopes,
+    care: Care,
 ) -> Result<Fit, ExplainError> {
+    let problem = Problem { experiment, unknowns, likelihood, care };
     let n = unknowns.len();
     let mut at: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
-    let evaluate = |at: &[f64]| -> Result<Point, ExplainError> {
-        let readings = experiment.readings(unknowns, at)?;
-        let z = |i: usize| (experiment.samples[i].value - readings[i]) / likelihood.sigma[i];
-        let e = likelihood.whitened(experiment, z);
-        let prior = unknowns.iter().zip(at).map(|(u, x)| ((x - u.mean) / u.sd).powi(2));
-        let objective = e.norm_squared() + prior.sum::<f64>();
-        Ok(Point { readings, e, objective })
-    };
-    let mut here = evaluate(&at)?;
+    let mut here = problem.evaluate(&at)?;
+    let mut slopes = Slopes::new();
+    let of_known = |j: &usize| known.contains_key(&unknowns[*j].target);
+    let (old, new): (Vec<usize>, Vec<usize>) = (0..n).partition(of_known);
+    for &j in &old {
+        let target = &unknowns[j].target;
+        slopes.insert(target.clone(), known[target].clone());
+    }
+    problem.differences(&at, &here, &new, &mut slopes)?;
+    let all: Vec<usize> = (0..n).collect();
+    let renewed = if care == Care::Quick { &new } else { &all };
     let mut sensitivity = DMatrix::zeros(likelihood.fitted.len(), n);
-    differences(experiment, unknowns, likelihood, &at, &here.readings, &mut sensitivity)?;
-    let (mut damping, mut fresh) = (1e-3, true);
+    problem.columns(&slopes, &all, &mut sensitivity);
+    let (mut damping, mut fresh) = (1e-3, old.is_empty());
     for _ in 0..MAX_STEPS {
-        let prior = DVector::from_iterator(
-            n,
-            unknowns.iter().zip(&at).map(|(u, x)| (x - u.mean) / (u.sd * u.sd)),
-        );
-        let gradient = sensitivity.tr_mul(&here.e) - prior;
+        let gradient = sensitivity.tr_mul(&here.e) - problem.prior_slope(&at);
         let hessian = curvature(&sensitivity, unknowns);
         let mut gained = 0.0;
         for _ in 0..6 {
@@ -176,6 +191,10 @@ pub fn fit(
             }
             let Some(factor) = damped.cholesky() else { break };
             let step = factor.solve(&gradient);
+            // A step that hardly changes anything is not worth a simulation.
+            if 0.5 * step.dot(&gradient) < 0.1 * ENOUGH {
+                break;
+            }
             let there = at.iter().zip(step.iter()).zip(unknowns);
             let there: Vec<f64> = there
                 .map(|((x, dx), u)| {
@@ -183,17 +202,18 @@ pub fn fit(
                 })
                 .collect();
             // Where the model does not run, the step was too long.
-            let Ok(trial) = evaluate(&there) else {
+            let Ok(trial) = problem.evaluate(&there) else {
                 damping *= 5.0;
                 continue;
             };
             // Broyden: the sensitivities that the step has shown. Residuals fall where readings rise.
             let moved =
                 DVector::from_iterator(n, there.iter().zip(&at).map(|(new, old)| new - old));
-            let size = moved.norm_squared();
+            let scaled = DVector::from_fn(n, |i, _| moved[i] / unknowns[i].sd.powi(2));
+            let size = scaled.dot(&moved);
             if size > 0.0 {
                 let miss = (&here.e - &trial.e) - &sensitivity * &moved;
-                sensitivity += miss * moved.transpose() / size;
+                sensitivity += miss * scaled.transpose() / size;
                 fresh = false;
             }
             if trial.objective < here.objective {
@@ -210,10 +230,10 @@ pub fn fit(
         if fresh {
             break;
         }
-        differences(experiment, unknowns, likelihood, &at, &here.readings, &mut sensitivity)?;
+        problem.differences(&at, &here, renewed, &mut slopes)?;
+        problem.columns(&slopes, renewed, &mut sensitivity);
         (damping, fresh) = (1e-3, true);
-        let prior = unknowns.iter().zip(&at).map(|(u, x)| (x - u.mean) / (u.sd * u.sd));
-        let gradient = sensitivity.tr_mul(&here.e) - DVector::from_iterator(n, prior);
+        let gradient = sensitivity.tr_mul(&here.e) - problem.prior_slope(&at);
         let step =
             curvature(&sensitivity, unknowns).cholesky().map(|factor| factor.solve(&gradient));
         // What a step with the true sensitivities would still gain.
@@ -222,8 +242,9 @@ pub fn fit(
         }
     }
     if !fresh {
-        differences(experiment, unknowns, likelihood, &at, &here.readings, &mut sensitivity)?;
+        problem.differences(&at, &here, renewed, &mut slopes)?;
     }
+    problem.columns(&slopes, &all, &mut sensitivity);
     let hessian = curvature(&sensitivity, unknowns);
     let covariance = hessian
         .clone()
@@ -235,29 +256,68 @@ pub fn fit(
         .cholesky()
         .map_or(0.0, |factor| 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
     let log_evidence = -0.5 * here.objective - 0.5 * log_det;
-    Ok(Fit { at, readings: here.readings, log_evidence, covariance, sensitivity })
+    let Point { readings, e, simulated, .. } = here;
+    Ok(Fit { at, readings, e, log_evidence, covariance, sensitivity, slopes, simulated })
 }
 
-fn differences(
-    experiment: &Experiment,
-    unknowns: &[Unknown],
-    likelihood: &Likelihood,
-    at: &[f64],
-    readings: &[f64],
-    sensitivity: &mut DMatrix<f64>,
-) -> Result<(), ExplainError> {
-    for (j, unknown) in unknowns.iter().enumerate() {
-        let mut beside = at.to_vec();
-        let step = DIFFERENCE * unknown.sd;
-        beside[j] += step;
-        let changed = experiment.readings(unknowns, &beside)?;
-        let slope = |i: usize| (changed[i] - readings[i]) / step / likelihood.sigma[i];
-        sensitivity.set_column(j, &likelihood.whitened(experiment, slope));
+impl Problem<'_> {
+    fn evaluate(&self, at: &[f64]) -> Result<Point, ExplainError> {
+        let simulated = self.experiment.simulated(self.unknowns, at, 1)?;
+        let readings = self.experiment.observed(&simulated, self.unknowns, at);
+        let z = self.likelihood.z(self.experiment, &readings);
+        let e = self.likelihood.whitened(|i| z[i]);
+        let prior = self.unknowns.iter().zip(at).map(|(u, x)| ((x - u.mean) / u.sd).powi(2));
+        let objective = e.norm_squared() + prior.sum::<f64>();
+        Ok(Point { simulated, readings, e, objective })
     }
-    Ok(())
+
+    fn prior_slope(&self, at: &[f64]) -> DVector<f64> {
+        let slope = self.unknowns.iter().zip(at).map(|(u, x)| (x - u.mean) / (u.sd * u.sd));
+        DVector::from_iterator(self.unknowns.len(), slope)
+    }
+
+    /// Simulated sensitivities of the unknowns at `wanted`.
+    fn differences(
+        &self,
+        at: &[f64],
+        here: &Point,
+        wanted: &[usize],
+        slopes: &mut Slopes,
+    ) -> Result<(), ExplainError> {
+        let slope = |j: usize| -> Result<Vec<f64>, ExplainError> {
+            let mut beside = at.to_vec();
+            let step = DIFFERENCE * self.unknowns[j].sd;
+            beside[j] += step;
+            let changed = if self.experiment.is_simulated(&self.unknowns[j].target) {
+                self.experiment.readings(self.unknowns, &beside)?
+            } else {
+                self.experiment.observed(&here.simulated, self.unknowns, &beside)
+            };
+            Ok(changed.iter().zip(&here.readings).map(|(y, y0)| (y - y0) / step).collect())
+        };
+        let found: Vec<_> = if self.care == Care::Alone {
+            on_all_cores(wanted.len(), |k| slope(wanted[k]))
+        } else {
+            wanted.iter().map(|&j| slope(j)).collect()
+        };
+        for (&j, found) in wanted.iter().zip(found) {
+            slopes.insert(self.unknowns[j].target.clone(), found?);
+        }
+        Ok(())
+    }
+
+    /// The whitened columns of the unknowns at `wanted`.
+    fn columns(&self, slopes: &Slopes, wanted: &[usize], sensitivity: &mut DMatrix<f64>) {
+        for &j in wanted {
+            let slope = &slopes[&self.unknowns[j].target];
+            let z = |i: usize| slope[i] / self.likelihood.sigma[i];
+            sensitivity.set_column(j, &self.likelihood.whitened(z));
+        }
+    }
 }
 
-fn curvature(sensitivity: &DMatrix<f64>, unknowns: &[Unknown]) -> DMatrix<f64> {
+/// Curvature of half the objective.
+pub(crate) fn curvature(sensitivity: &DMatrix<f64>, unknowns: &[Unknown]) -> DMatrix<f64> {
     let mut hessian = sensitivity.tr_mul(sensitivity);
     for (i, unknown) in unknowns.iter().enumerate() {
         hessian[(i, i)] += 1.0 / (unknown.sd * unknown.sd);

@@ -1,12 +1,9 @@
 //! The gap between simulation and measurement before and after, by sensor, use and regime.
 
 use crate::experiment::Experiment;
+use crate::find::regimes::changing;
 use crate::split::Use;
 use serde::Serialize;
-use std::collections::HashMap;
-
-/// A reading changes where its rate is more than this share of the largest one of its sensor in the run.
-const CHANGING: f64 = 0.05;
 
 /// Root mean squares over some samples of a sensor, in the unit of its column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -73,26 +70,4 @@ pub fn gaps(
         }
     }
     gaps
-}
-
-/// Whether each sample is read while its quantity changes.
-fn changing(experiment: &Experiment) -> Vec<bool> {
-    let samples = &experiment.samples;
-    let rate = |i: usize| -> f64 {
-        let sample = &samples[i];
-        let same =
-            |j: usize| samples.get(j).filter(|s| (s.run, s.sensor) == (sample.run, sample.sensor));
-        let before = i.checked_sub(1).and_then(same).unwrap_or(sample);
-        let after = same(i + 1).unwrap_or(sample);
-        let dt = after.time_s - before.time_s;
-        if dt > 0.0 { (after.value - before.value).abs() / dt } else { 0.0 }
-    };
-    let rates: Vec<f64> = (0..samples.len()).map(rate).collect();
-    let mut largest: HashMap<(usize, usize), f64> = HashMap::new();
-    for (sample, rate) in samples.iter().zip(&rates) {
-        let of = largest.entry((sample.run, sample.sensor)).or_default();
-        *of = of.max(*rate);
-    }
-    let own = samples.iter().zip(&rates);
-    own.map(|(sample, rate)| *rate > CHANGING * largest[&(sample.run, sample.sensor)]).collect()
 }

@@ -7,6 +7,7 @@
 //! **Sources** EN 60751 (Pt100 classes), EN 1434 (heat meters).
 
 use crate::error::ExplainError;
+use crate::unknown::Target;
 use anergy_core::units::Unit;
 use serde::{Deserialize, Serialize};
 
@@ -73,6 +74,55 @@ pub struct Sensor {
     pub clock: String,
 }
 
+/// An `[[effect]]` of the sensor file: what is wrong with a sensor.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SensorEffect {
+    /// Word of the catalogue.
+    pub id: String,
+    /// Its column.
+    pub component: String,
+    /// Offset of a temperature, K.
+    pub bias_k: Option<f64>,
+    /// Offset of a mass flow, kg/s.
+    pub offset_kg_s: Option<f64>,
+    /// Offset of a volume flow, m3/s.
+    pub offset_m3_s: Option<f64>,
+    /// Gain.
+    pub gain: Option<f64>,
+    /// Time constant beyond the known one, s.
+    pub lag_s: Option<f64>,
+    /// Its clock is late by this, s.
+    pub clock_s: Option<f64>,
+    /// Drift from the beginning of a run to its end, K.
+    pub drift_k: Option<f64>,
+    /// Jump within a run, K.
+    pub step_k: Option<f64>,
+    /// Share of a run that is over when it jumps.
+    pub step_share: Option<f64>,
+    /// Where it comes from; changes nothing.
+    pub because: String,
+    /// Interval of its value; changes nothing.
+    pub ci95: Vec<f64>,
+}
+
+impl SensorEffect {
+    /// What it does to the sensor at a place.
+    pub fn flaws(&self, sensor: usize) -> impl Iterator<Item = (Target, f64)> {
+        let offset = self.bias_k.or(self.offset_kg_s).or(self.offset_m3_s);
+        let all = [
+            (Target::Bias(sensor), offset),
+            (Target::Gain(sensor), self.gain),
+            (Target::Lag(sensor), self.lag_s),
+            (Target::Clock(sensor), self.clock_s),
+            (Target::Drift(sensor), self.drift_k),
+            (Target::Step(sensor), self.step_k),
+            (Target::StepShare(sensor), self.step_share),
+        ];
+        all.into_iter().filter_map(|(flaw, value)| Some((flaw, value?)))
+    }
+}
+
 /// The whole sensor file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -80,6 +130,9 @@ pub struct SensorFile {
     /// Its sensors.
     #[serde(default)]
     pub sensor: Vec<Sensor>,
+    /// What is wrong with them.
+    #[serde(default)]
+    pub effect: Vec<SensorEffect>,
 }
 
 impl SensorFile {
@@ -110,6 +163,22 @@ impl SensorFile {
                 .any(|other| other.column == sensor.column && other.role == sensor.role)
             {
                 return wrong("it is there twice".into());
+            }
+        }
+        for effect in &file.effect {
+            let column = &effect.component;
+            let wrong = |problem: &str| {
+                let problem = format!("effect {} of \"{column}\": {problem}", effect.id);
+                Err(ExplainError::Sensors { problem })
+            };
+            if !file.sensor.iter().any(|sensor| sensor.column == *column) {
+                return wrong("there is no such sensor");
+            }
+            if effect.flaws(0).any(|(_, value)| !value.is_finite())
+                || effect.gain.is_some_and(|gain| gain == 0.0)
+                || effect.lag_s.is_some_and(|lag_s| lag_s < 0.0)
+            {
+                return wrong("a value that no sensor has");
             }
         }
         let compared = file.sensor.iter().filter(|sensor| sensor.role == Role::Compare).count();
@@ -159,6 +228,11 @@ impl Sensor {
         self.of_si(difference) - self.of_si(0.0)
     }
 
+    /// A difference of readings in SI.
+    pub fn difference_to_si(&self, difference: f64) -> f64 {
+        self.to_si(difference) - self.to_si(0.0)
+    }
+
     /// Accuracy for readings of a middle and a largest size, SI.
     pub fn accuracy(&self, middle: f64, largest: f64) -> Accuracy {
         let root3 = 3.0_f64.sqrt();
@@ -176,7 +250,7 @@ impl Sensor {
             (Class::Unknown, "pa") => (2e3, 0.0, 200.0),
             (Class::Unknown, _) => (0.0, 0.05, 0.01 * middle),
         };
-        let lsb = self.to_si(self.quantisation) - self.to_si(0.0);
+        let lsb = self.difference_to_si(self.quantisation);
         let noise = (noise * noise + lsb * lsb / 12.0).sqrt().max(1e-12);
         Accuracy { bias, gain, noise }
     }

@@ -1,8 +1,13 @@
 //! What was found, for people and for programs: `report.json`, `report.md`, `report.html`.
 
-use crate::experiment::Experiment;
+mod html;
+
+pub use html::html;
+
 use crate::explain::{Explanation, Finding, Verdict};
+use crate::find::Found;
 use crate::gap::Gap;
+use crate::significance::State;
 use crate::split::Use;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -37,7 +42,8 @@ pub fn json(explanation: &Explanation) -> Value {
         let e = f.estimate;
         json!({
             "id": f.id, "component": f.component, "what": f.words, "probability": f.probability,
-            "evidence": f.evidence, "strain": f.strain,
+            "evidence": f.evidence, "elpd": f.elpd, "elpd_error": f.elpd_error, "strain": f.strain,
+            "validation_z": f.validation_z, "flags": f.flags, "separates": f.separates,
             "params": { f.parameter: { "value": e.value, "lo": e.lo, "hi": e.hi, "unit": f.unit } },
         })
     };
@@ -53,10 +59,79 @@ pub fn json(explanation: &Explanation) -> Value {
         "effects": explanation.effects.iter().map(effect).collect::<Vec<_>>(),
         "class": explanation.class.iter().map(|f| json!([f.id, f.component])).collect::<Vec<_>>(),
         "tried": explanation.tried.iter().map(effect).collect::<Vec<_>>(),
+        "found": explanation.found,
+        "unknowns": explanation.strained.iter().map(|(name, value, far)| {
+            json!({ "name": name, "value": value, "standard_deviations": far })
+        }).collect::<Vec<_>>(),
+        "times_s": explanation.times.iter().map(|(part, s)| ((*part).to_owned(), Value::from(*s))).collect::<Map<_, _>>(),
         "show_rmse_before": shown(&|gap| gap.rmse_before),
         "show_rmse_after": shown(&|gap| gap.rmse_after),
         "gaps": explanation.gaps,
     })
+}
+
+/// Sensors, regimes and parts.
+fn where_and_when(out: &mut String, found: &Found) {
+    out.push_str("\n## Where and when\n\nSensors, with the tolerances fitted:\n\n| sensor | says | residual, sigma (95 %) | mean | smallest mean that would be seen |\n|---|---|---|---|---|\n");
+    for s in &found.sensors {
+        let says = match s.state {
+            State::Differs => "differs",
+            State::Agrees => "agrees",
+            State::CannotTell => "cannot tell",
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {says} | {:.2} ({:.2} to {:.2}) | {:.3} {unit} | {:.3} {unit} |",
+            s.column,
+            s.z,
+            s.z_lo,
+            s.z_hi,
+            s.mean,
+            s.detectable,
+            unit = s.unit
+        );
+    }
+    let loud: Vec<_> = found.regimes.iter().filter(|r| r.significant).take(12).collect();
+    if !loud.is_empty() {
+        out.push_str("\nRegimes in which the model as it is differs by more than chance:\n\n| sensor | regime | samples | residual, sigma | share of all squares | over the share of samples |\n|---|---|---|---|---|---|\n");
+        for r in loud {
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} | {:.1} | {:.0} % | {:.1} |",
+                r.column,
+                r.regime,
+                r.samples,
+                r.z,
+                100.0 * r.share,
+                r.concentration
+            );
+        }
+    }
+    if found.parts.is_empty() {
+        return;
+    }
+    out.push_str("\nParts driven by their own measured boundaries: high when cut out, the cause lies inside; high only in the whole, it lies elsewhere.\n\n| part | sensors | cut out, sigma | in the whole, sigma | probability | heat missing at its outlet | goes with |\n|---|---|---|---|---|---|---|\n");
+    for part in &found.parts {
+        let flux = part.flux.as_ref();
+        let missing = flux.map_or_else(String::new, |f| format!("{:.0} W", f.mean_w));
+        let clue = flux.and_then(|f| f.clues.first());
+        let clue = clue.map_or_else(String::new, |(what, r)| format!("{what} ({r:.2})"));
+        let _ = writeln!(
+            out,
+            "| {} | {} | {:.2} | {:.2} | {:.2} | {missing} | {clue} |",
+            part.components.join(", "),
+            part.sensors.join(", "),
+            part.isolated_z,
+            part.whole_z,
+            part.probability
+        );
+    }
+}
+
+/// How long it took.
+fn times(explanation: &Explanation) -> String {
+    let each = explanation.times.iter().map(|(part, s)| format!("{part} {s:.1} s"));
+    each.collect::<Vec<_>>().join(", ")
 }
 
 /// `report.md`.
@@ -104,6 +179,9 @@ pub fn markdown(title: &str, explanation: &Explanation) -> String {
         }
     }
     table(&mut out, "Tried, best first", &explanation.tried);
+    if let Some(found) = &explanation.found {
+        where_and_when(&mut out, found);
+    }
     if !explanation.gaps.is_empty() {
         out.push_str("\n## The gap before and after\n\nRoot mean square of simulation less measurement, with the effects and every tolerance at its middle. The samples of `show` were neither fitted nor used to choose.\n\n| sensor | samples | regime | number | before | after | before, sigma | after, sigma |\n|---|---|---|---|---|---|---|---|\n");
         for gap in &explanation.gaps {
@@ -121,6 +199,9 @@ pub fn markdown(title: &str, explanation: &Explanation) -> String {
                 unit = gap.unit
             );
         }
+    }
+    if !explanation.times.is_empty() {
+        let _ = write!(out, "\nTime: {}.\n", times(explanation));
     }
     out
 }
@@ -155,220 +236,6 @@ pub fn upper(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Points that a curve has at most.
-const POINTS: usize = 1500;
-const WIDTH: f64 = 900.0;
-const HEIGHT: f64 = 240.0;
-const LEFT: f64 = 60.0;
-const BOTTOM: f64 = 36.0;
-
-/// `report.html`: one file, figures of every compared sensor and run.
-pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> String {
-    let mut out = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title><style>\n{STYLE}</style></head><body>\n<h1>{title}</h1>\n<p class=\"verdict\"><strong>{}</strong> {}.</p>\n",
-        explanation.verdict.sentence(),
-        escape(&upper(&explanation.because)),
-        title = escape(title),
-    );
-    if !explanation.problems.is_empty() {
-        let items: String =
-            explanation.problems.iter().map(|p| format!("<li>{}</li>", escape(p))).collect();
-        let _ = writeln!(out, "<ul>{items}</ul>");
-    }
-    html_table(&mut out, "Added to the model", &explanation.effects);
-    if explanation.class.len() > 1 {
-        html_table(
-            &mut out,
-            "Not told apart by these data, most plausible first",
-            &explanation.class,
-        );
-        let advice = |f: &Finding| format!("<li>{} ({}): {}</li>", f.id, f.words, f.separates);
-        let items: String = explanation.class.iter().map(advice).collect();
-        let _ = writeln!(out, "<p>What would tell them apart:</p><ul>{items}</ul>");
-    }
-    if !explanation.curves.before.is_empty() {
-        out.push_str("<h2>Measured, before and after</h2>\n<p class=\"legend\"><span class=\"measured\">measured</span> <span class=\"before\">model as it is</span> <span class=\"after\">with the effects</span> <span class=\"shown\">shaded: neither fitted nor used to choose</span></p>\n");
-        for (run, measured) in experiment.runs.iter().enumerate() {
-            for (sensor, of) in experiment.sensors.sensor.iter().enumerate() {
-                let samples: Vec<usize> = (0..experiment.samples.len())
-                    .filter(|&i| {
-                        (experiment.samples[i].run, experiment.samples[i].sensor) == (run, sensor)
-                    })
-                    .collect();
-                if samples.is_empty() {
-                    continue;
-                }
-                let name = if measured.name.is_empty() {
-                    String::new()
-                } else {
-                    format!(", run {}", measured.name)
-                };
-                let _ = writeln!(out, "<h3>{}{}</h3>", escape(&of.column), escape(&name));
-                let read = |si: f64| of.of_si(si);
-                let (before, after) = (&explanation.curves.before, &explanation.curves.after);
-                let changed = !explanation.effects.is_empty();
-                let value = |i: usize| read(experiment.samples[i].value);
-                let mut curves: Vec<(&str, Vec<f64>)> = vec![
-                    ("measured", samples.iter().map(|&i| value(i)).collect()),
-                    ("before", samples.iter().map(|&i| read(before[i])).collect()),
-                ];
-                let mut rest: Vec<(&str, Vec<f64>)> =
-                    vec![("before", samples.iter().map(|&i| read(before[i]) - value(i)).collect())];
-                if changed {
-                    curves.push(("after", samples.iter().map(|&i| read(after[i])).collect()));
-                    rest.push((
-                        "after",
-                        samples.iter().map(|&i| read(after[i]) - value(i)).collect(),
-                    ));
-                }
-                let times: Vec<f64> =
-                    samples.iter().map(|&i| experiment.samples[i].time_s).collect();
-                let shown: Vec<bool> = samples
-                    .iter()
-                    .map(|&i| explanation.curves.uses[i] == Some(Use::Show))
-                    .collect();
-                figure(&mut out, &times, &curves, &shown, &format!("{} in {}", of.column, of.unit));
-                figure(
-                    &mut out,
-                    &times,
-                    &rest,
-                    &shown,
-                    &format!("simulated less measured, {}", of.unit),
-                );
-            }
-        }
-    }
-    html_table(&mut out, "Tried, best first", &explanation.tried);
-    out.push_str("</body></html>\n");
-    out
-}
-
-fn html_table(out: &mut String, title: &str, findings: &[Finding]) {
-    if findings.is_empty() {
-        return;
-    }
-    let _ = writeln!(
-        out,
-        "<h2>{title}</h2>\n<table><tr><th>effect</th><th>where</th><th>what</th><th>value (95 %)</th><th>probability</th><th>nats more than without</th><th>sigma from plausible</th></tr>"
-    );
-    for f in findings {
-        let _ = writeln!(
-            out,
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2}</td><td>{:.1}</td><td>{:.1}</td></tr>",
-            f.id,
-            escape(&f.component),
-            f.words,
-            value(f),
-            f.probability,
-            f.evidence,
-            f.strain
-        );
-    }
-    out.push_str("</table>\n");
-}
-
-/// Curves over time.
-fn figure(
-    out: &mut String,
-    times: &[f64],
-    curves: &[(&str, Vec<f64>)],
-    shown: &[bool],
-    label: &str,
-) {
-    let (first, last) = (times[0], times[times.len() - 1].max(times[0] + 1.0));
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for y in curves.iter().flat_map(|(_, values)| values) {
-        (low, high) = (low.min(*y), high.max(*y));
-    }
-    let step = nice((high - low).max(1e-9) / 4.0);
-    (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
-    let x = |t: f64| LEFT + (WIDTH - LEFT - 8.0) * (t - first) / (last - first);
-    let y = |v: f64| 8.0 + (HEIGHT - BOTTOM - 8.0) * (high - v) / (high - low).max(1e-12);
-    let _ = writeln!(
-        out,
-        "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">",
-        escape(label)
-    );
-    let mut i = 0;
-    while i < shown.len() {
-        let end = (i..shown.len()).find(|&j| shown[j] != shown[i]).unwrap_or(shown.len());
-        if shown[i] {
-            let (a, b) = (x(times[i]), x(times[end - 1]));
-            let _ = writeln!(
-                out,
-                "<rect class=\"shown\" x=\"{a:.1}\" y=\"8\" width=\"{:.1}\" height=\"{:.1}\"/>",
-                b - a,
-                HEIGHT - BOTTOM - 8.0
-            );
-        }
-        i = end;
-    }
-    let rows = ((high - low) / step).round() as i32;
-    let places = (-step.log10().floor()).clamp(0.0, 6.0) as usize;
-    for k in 0..=rows {
-        let v = low + f64::from(k) * step;
-        let _ = writeln!(
-            out,
-            "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{}\" y1=\"{h:.1}\" y2=\"{h:.1}\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{v:.places$}</text>",
-            WIDTH - 8.0,
-            LEFT - 6.0,
-            y(v) + 4.0,
-            h = y(v)
-        );
-    }
-    let step = nice((last - first) / 6.0);
-    let mut t = (first / step).ceil() * step;
-    while t <= last {
-        let _ = writeln!(
-            out,
-            "<text x=\"{:.1}\" y=\"{}\" text-anchor=\"middle\">{t:.0} s</text>",
-            x(t),
-            HEIGHT - BOTTOM + 16.0
-        );
-        t += step;
-    }
-    let _ = writeln!(out, "<text x=\"{LEFT}\" y=\"{}\">{}</text>", HEIGHT - 4.0, escape(label));
-    let every = times.len().div_ceil(POINTS);
-    for (class, values) in curves {
-        let points: String = (0..times.len())
-            .filter(|i| i % every == 0 || i + 1 == times.len())
-            .map(|i| format!("{:.1},{:.1} ", x(times[i]), y(values[i])))
-            .collect();
-        let _ = writeln!(out, "<polyline class=\"{class}\" points=\"{}\"/>", points.trim_end());
-    }
-    out.push_str("</svg>\n");
-}
-
-/// The next of 1, 2, 5 times a power of ten.
-fn nice(step: f64) -> f64 {
-    let power = 10.0_f64.powf(step.log10().floor());
-    let share = step / power;
-    power
-        * if share <= 1.0 {
-            1.0
-        } else if share <= 2.0 {
-            2.0
-        } else if share <= 5.0 {
-            5.0
-        } else {
-            10.0
-        }
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-const STYLE: &str = ":root{color-scheme:light dark;--ink:#1d2433;--paper:#fff;--line:#d8dde6;--a:#1d2433;--b:#d1495b;--c:#0a7e8c;--s:#8883}
-@media(prefers-color-scheme:dark){:root{--ink:#e6e9ef;--paper:#14181f;--line:#39414f;--a:#e6e9ef;--b:#ff7a8a;--c:#4fd0df}}
-body{font:15px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:var(--ink);background:var(--paper)}
-table{border-collapse:collapse;font-size:14px}td,th{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:left}
-.verdict{font-size:1.1rem}svg{width:100%;height:auto}svg text{font-size:12px;fill:var(--ink)}
-.grid{stroke:var(--line);stroke-width:1}polyline{fill:none;stroke-width:1.6}rect.shown{fill:var(--s)}
-polyline.measured{stroke:var(--a)}polyline.before{stroke:var(--b)}polyline.after{stroke:var(--c)}
-.legend span{padding:0 .5rem;border-left:.6rem solid}.legend .measured{border-color:var(--a)}.legend .before{border-color:var(--b)}.legend .after{border-color:var(--c)}.legend .shown{border-color:var(--s)}
-";
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -377,7 +244,5 @@ mod tests {
     fn numbers_for_people() {
         assert_eq!(digits(2689.66), "2690");
         assert_eq!(digits(0.012_345), "0.01235");
-        assert_eq!(nice(0.3), 0.5);
-        assert_eq!(escape("</script>"), "&lt;/script&gt;");
     }
 }

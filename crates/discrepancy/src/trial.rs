@@ -1,96 +1,95 @@
 //! Candidates beside what is uncertain anyway: a fit of each, on all cores.
 
 use crate::catalogue::Candidate;
+use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::Experiment;
-use crate::fit::{Fit, Likelihood, fit};
+use crate::fit::{Care, Fit, Likelihood, Slopes, fit};
 use crate::unknown::Unknown;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A candidate with its fit.
+/// Candidates with their fit.
 pub struct Tried {
-    /// Its place among the candidates.
-    pub candidate: usize,
+    /// Their places among the candidates: one, or a pair.
+    pub candidates: Vec<usize>,
     /// Everything that was fitted.
     pub unknowns: Vec<Unknown>,
-    /// Place of the candidate's parameter among the unknowns.
-    pub place: usize,
+    /// Places of the candidates' parameters among the unknowns.
+    pub places: Vec<usize>,
     /// The fit.
     pub fit: Fit,
 }
 
-/// Fits of candidates beside what is there; from the values of an earlier round where there is one.
-///
-/// # Errors
-/// What keeps the model from running with every one of them.
-pub fn fits(
-    experiment: &Experiment,
-    base: &[Unknown],
-    all: &[Candidate],
-    open: &[usize],
-    likelihood: &Likelihood,
-    earlier: &[Tried],
-) -> Result<Vec<Tried>, ExplainError> {
-    let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<(usize, Result<Tried, ExplainError>)>> = Mutex::new(Vec::new());
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(open.len().max(1));
-    std::thread::scope(|scope| {
-        for _ in 0..cores {
-            scope.spawn(|| {
-                loop {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(&candidate) = open.get(k) else { break };
-                    let start = earlier.iter().find(|tried| tried.candidate == candidate);
-                    let tried = try_one(experiment, base, all, candidate, likelihood, start);
-                    if let Ok(mut done) = done.lock() {
-                        done.push((k, tried));
-                    }
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_default();
-    done.sort_by_key(|(k, _)| *k);
-    // A candidate with which the model does not run is none, unless it runs with none of them.
-    let (ran, failed): (Vec<_>, Vec<_>) =
-        done.into_iter().map(|(_, tried)| tried).partition(Result::is_ok);
-    if ran.is_empty()
-        && let Some(error) = failed.into_iter().find_map(Result::err)
-    {
-        return Err(error);
-    }
-    Ok(ran.into_iter().filter_map(Result::ok).collect())
+/// What all trials have in common.
+pub struct Common<'a> {
+    /// The experiment.
+    pub experiment: &'a Experiment,
+    /// What is uncertain, and what was found before, from where a fit starts.
+    pub base: &'a [Unknown],
+    /// The catalogue.
+    pub all: &'a [Candidate],
+    /// What is fitted to.
+    pub likelihood: &'a Likelihood,
+    /// Sensitivities that are known near by.
+    pub slopes: &'a Slopes,
 }
 
-fn try_one(
-    experiment: &Experiment,
-    base: &[Unknown],
-    all: &[Candidate],
-    candidate: usize,
-    likelihood: &Likelihood,
-    start: Option<&Tried>,
-) -> Result<Tried, ExplainError> {
-    let own = &all[candidate].unknown;
-    let mut unknowns: Vec<Unknown> =
-        base.iter().filter(|unknown| unknown.target != own.target).cloned().collect();
-    unknowns.extend(all[candidate].beside.iter().cloned());
-    unknowns.push(own.clone());
-    if let Some(start) = start {
-        for (unknown, at) in unknowns.iter_mut().zip(&start.fit.at) {
-            unknown.start = *at;
+/// What is tried, and where its fit starts.
+pub struct Start {
+    /// Places among the candidates.
+    pub candidates: Vec<usize>,
+    /// Coordinates of their parameters.
+    pub at: Vec<f64>,
+    /// An earlier fit of the same unknowns.
+    pub earlier: Option<Tried>,
+}
+
+impl Common<'_> {
+    /// Fits beside what is there.
+    ///
+    /// # Errors
+    /// What keeps the model from running with every one of them.
+    pub fn fits(&self, starts: &[Start], care: Care) -> Result<Vec<Tried>, ExplainError> {
+        let done = on_all_cores(starts.len(), |k| self.fit_one(&starts[k], care));
+        // A candidate with which the model does not run is none, unless it runs with none of them.
+        let (ran, failed): (Vec<_>, Vec<_>) = done.into_iter().partition(Result::is_ok);
+        if ran.is_empty()
+            && let Some(error) = failed.into_iter().find_map(Result::err)
+        {
+            return Err(error);
         }
+        Ok(ran.into_iter().filter_map(Result::ok).collect())
     }
-    let place = unknowns.len() - 1;
-    let fit = fit(experiment, &unknowns, likelihood)?;
-    Ok(Tried { candidate, unknowns, place, fit })
+
+    fn fit_one(&self, start: &Start, care: Care) -> Result<Tried, ExplainError> {
+        let own: Vec<&Candidate> = start.candidates.iter().map(|&k| &self.all[k]).collect();
+        let taken = |unknown: &&Unknown| !own.iter().any(|c| c.unknown.target == unknown.target);
+        let mut unknowns: Vec<Unknown> = self.base.iter().filter(taken).cloned().collect();
+        for candidate in &own {
+            unknowns.extend(candidate.beside.iter().cloned());
+        }
+        let first = unknowns.len();
+        for (candidate, at) in own.iter().zip(&start.at) {
+            unknowns.push(Unknown { start: *at, ..candidate.unknown.clone() });
+        }
+        let mut slopes = self.slopes;
+        if let Some(earlier) = &start.earlier {
+            for (unknown, at) in unknowns.iter_mut().zip(&earlier.fit.at) {
+                unknown.start = *at;
+            }
+            slopes = &earlier.fit.slopes;
+        }
+        let places = (first..unknowns.len()).collect();
+        let fit = fit(self.experiment, &unknowns, self.likelihood, slopes, care)?;
+        Ok(Tried { candidates: start.candidates.clone(), unknowns, places, fit })
+    }
 }
 
 /// Cosine of the sensitivities of two effects, without what the tolerances could take up.
 pub fn cosine(a: &Tried, b: &Tried) -> f64 {
     let own = |tried: &Tried| {
-        let mut column = tried.fit.sensitivity.column(tried.place).into_owned();
-        let others = tried.fit.sensitivity.columns(0, tried.place);
+        let place = tried.places[0];
+        let mut column = tried.fit.sensitivity.column(place).into_owned();
+        let others = tried.fit.sensitivity.columns(0, place);
         if let Ok(inverse) = (others.tr_mul(&others)).pseudo_inverse(1e-12) {
             column -= others * (inverse * others.tr_mul(&column));
         }

@@ -4,9 +4,10 @@
 //! strength that spans decades is its logarithm.
 
 use serde::Serialize;
+use std::fmt;
 
 /// What an unknown changes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Target {
     /// Offset of a sensor, SI.
     Bias(usize),
@@ -16,6 +17,12 @@ pub enum Target {
     Lag(usize),
     /// The clock of a sensor is late by this time, s.
     Clock(usize),
+    /// A sensor drifts by this from the beginning of a run to its end, SI.
+    Drift(usize),
+    /// The readings of a sensor jump by this within a run, SI.
+    Step(usize),
+    /// Share of a run that is over when they jump.
+    StepShare(usize),
     /// The water of a run begins warmer by this than the mean of the temperatures read first, K.
     Initial(usize),
     /// A parameter of an effect of the model file.
@@ -27,6 +34,41 @@ pub enum Target {
         /// Its parameter, SI.
         field: &'static str,
     },
+}
+
+impl Target {
+    /// The sensor that it is a flaw of.
+    pub fn sensor(&self) -> Option<usize> {
+        match self {
+            Self::Bias(i)
+            | Self::Gain(i)
+            | Self::Lag(i)
+            | Self::Clock(i)
+            | Self::Drift(i)
+            | Self::Step(i)
+            | Self::StepShare(i) => Some(*i),
+            Self::Initial(_) | Self::Effect { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of_sensor = |f: &mut fmt::Formatter<'_>, what: &str, i: &usize| {
+            write!(f, "{what} of sensor {}", i + 1)
+        };
+        match self {
+            Self::Bias(i) => of_sensor(f, "offset", i),
+            Self::Gain(i) => of_sensor(f, "gain", i),
+            Self::Lag(i) => of_sensor(f, "lag", i),
+            Self::Clock(i) => of_sensor(f, "clock", i),
+            Self::Drift(i) => of_sensor(f, "drift", i),
+            Self::Step(i) => of_sensor(f, "jump", i),
+            Self::StepShare(i) => of_sensor(f, "moment of the jump", i),
+            Self::Initial(run) => write!(f, "temperature at the start of run {}", run + 1),
+            Self::Effect { id, component, field } => write!(f, "{id} of {component} ({field})"),
+        }
+    }
 }
 
 /// An unknown with its prior.

@@ -3,7 +3,7 @@
 use super::run::read_model;
 use crate::failure::Failure;
 use crate::output::line;
-use anergy_discrepancy::addition::{added, reverted};
+use anergy_discrepancy::addition::{added, added_to_sensors, reverted};
 use anergy_discrepancy::data;
 use anergy_discrepancy::error::ExplainError;
 use anergy_discrepancy::experiment::Experiment;
@@ -29,7 +29,7 @@ pub struct ExplainArguments {
     /// Folder for report.html, report.md, report.json and the explained model
     #[arg(long, value_name = "DIR", default_value = "results/explain")]
     out: PathBuf,
-    /// Take an effect that was added out of the model file again
+    /// Take an effect that was added out of the model file, or the sensor file, again
     #[arg(long, value_name = "ID", conflicts_with_all = ["data", "sensors", "split"])]
     revert: Option<String>,
 }
@@ -143,6 +143,11 @@ pub fn find_in(model: Model, case: &Case<'_>, out: &Path) -> Result<(), Failure>
         let explained = out.join(format!("{}.explained.toml", case.stem));
         write(&explained, &added(case.text, &found.effects, &found.because))?;
         line!("\nthe model with what was missing: {}", explained.display());
+    }
+    if found.effects.iter().any(|effect| effect.of_sensor()) {
+        let explained = out.join("sensors.explained.toml");
+        write(&explained, &added_to_sensors(case.sensors, &found.effects, &found.because))?;
+        line!("\nthe sensor file with what was wrong: {}", explained.display());
     }
     line!("\nresults in {}: report.html, report.md, report.json", out.display());
     Ok(())

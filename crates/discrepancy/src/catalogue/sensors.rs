@@ -3,10 +3,23 @@
 use super::Candidate;
 use crate::experiment::Experiment;
 use crate::sensors::Role;
+use crate::uncertainty::{interval_s, jitter_s};
 use crate::unknown::{Target, Unknown};
 
 /// What the first readings may say too little of the water at the start, at least, K.
 const FIRST_K: f64 = 0.3;
+
+/// Tolerance of a clock, s: one interval, equally distributed, where it is not that of the inputs; else the jitter.
+fn clock_s(experiment: &Experiment, sensor: usize) -> f64 {
+    let own = &experiment.sensors.sensor[sensor].clock;
+    let mut inputs = experiment.sensors.sensor.iter().filter(|s| s.role == Role::Input);
+    let tracks = experiment.runs.iter().map(|run| &run.tracks[sensor]);
+    if inputs.any(|input| input.clock != *own) {
+        tracks.map(interval_s).fold(0.0, f64::max) / 3.0_f64.sqrt()
+    } else {
+        tracks.map(jitter_s).fold(0.0, f64::max)
+    }
+}
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     for (i, accuracy) in experiment.accuracy.iter().enumerate() {
@@ -15,6 +28,9 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         }
         if accuracy.gain > 0.0 {
             all.push(Unknown::plain(Target::Gain(i), 1.0, accuracy.gain));
+        }
+        if experiment.sensors.sensor[i].role == Role::Compare {
+            all.push(Unknown::plain(Target::Clock(i), 0.0, clock_s(experiment, i)));
         }
     }
     for run in 0..experiment.runs.len() {
@@ -73,7 +89,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 "clock of the sensor",
                 ("clock_s", "s"),
                 Unknown::plain(Target::Clock(i), 0.0, 60.0 / 1.96),
-                Some((0.0, 1.0)),
+                Some((0.0, clock_s(experiment, i))),
                 "two flow rates: the shift of a clock is the same in both",
             );
         }

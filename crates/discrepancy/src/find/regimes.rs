@@ -1,0 +1,147 @@
+//! What the plant was doing at every sample, by measured signals.
+
+use crate::experiment::Experiment;
+use crate::uncertainty::interval_s;
+
+/// A flow below this share of its largest is none.
+const OFF: f64 = 0.02;
+/// After a start or before a stop, as many intervals of the readings, and at least so long, s.
+const AROUND: (f64, f64) = (6.0, 120.0);
+/// Colder than this outside is cold, K.
+const COLD_K: f64 = 278.15;
+/// A reading changes where its rate is more than this share of the largest one of its sensor in the run.
+const CHANGING: f64 = 0.05;
+/// A command that moves by this share of its range is switched.
+const SWITCHED: f64 = 0.5;
+
+/// A state of the plant, or of a sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Regime {
+    /// What it is called.
+    pub name: String,
+    /// Whether each sample was read in it.
+    pub holds: Vec<bool>,
+}
+
+/// All regimes that occur.
+pub fn regimes(experiment: &Experiment) -> Vec<Regime> {
+    let mut all = Vec::new();
+    let changing = changing(experiment);
+    let steady = changing.iter().map(|c| !c).collect();
+    all.push(Regime { name: "changing".into(), holds: changing });
+    all.push(Regime { name: "steady".into(), holds: steady });
+    for (k, sensor) in experiment.sensors.sensor.iter().enumerate() {
+        let (si, column) = (sensor.si(), &sensor.column);
+        match si.as_str() {
+            "kg_s" | "m3_s" => of_flow(experiment, k, column, &mut all),
+            "w" => terciles(experiment, k, column, &mut all),
+            "k" if sensor.signal.contains("outdoor") => {
+                let name = format!("{column} cold");
+                all.push(Regime {
+                    name,
+                    holds: each(experiment, |run, t| reading(experiment, run, k, t) < COLD_K),
+                });
+            }
+            "1" => of_command(experiment, k, column, &mut all),
+            _ => {}
+        }
+    }
+    all.retain(|regime| {
+        let count = regime.holds.iter().filter(|h| **h).count();
+        count > 0 && count < regime.holds.len()
+    });
+    all
+}
+
+fn reading(experiment: &Experiment, run: usize, sensor: usize, time_s: f64) -> f64 {
+    experiment.runs[run].tracks[sensor].at(time_s)
+}
+
+fn each(experiment: &Experiment, holds: impl Fn(usize, f64) -> bool) -> Vec<bool> {
+    experiment.samples.iter().map(|sample| holds(sample.run, sample.time_s)).collect()
+}
+
+fn of_flow(experiment: &Experiment, k: usize, column: &str, all: &mut Vec<Regime>) {
+    let values = || experiment.runs.iter().flat_map(|run| run.tracks[k].value.iter());
+    let least = OFF * values().fold(0.0_f64, |most, y| most.max(y.abs()));
+    let flow = |run: usize, t: f64| reading(experiment, run, k, t);
+    let around =
+        |run: usize| (AROUND.0 * interval_s(&experiment.runs[run].tracks[k])).max(AROUND.1);
+    let off = |run: usize, t: f64| flow(run, t).abs() < least;
+    let mut add =
+        |name: &str, holds: Vec<bool>| all.push(Regime { name: format!("{column} {name}"), holds });
+    add("off", each(experiment, off));
+    // Some moment of the time before, or after, without flow.
+    let near = |run: usize, t: f64, sign: f64| {
+        !off(run, t) && (1..=12).any(|i| off(run, t + sign * around(run) * f64::from(i) / 12.0))
+    };
+    add("starting", each(experiment, |run, t| near(run, t, -1.0)));
+    add("stopping", each(experiment, |run, t| near(run, t, 1.0)));
+    add("reversed", each(experiment, |run, t| flow(run, t) < -least));
+    terciles(experiment, k, column, all);
+}
+
+/// Low, middle and high thirds of what a sensor reads while it reads something.
+fn terciles(experiment: &Experiment, k: usize, column: &str, all: &mut Vec<Regime>) {
+    let mut sizes: Vec<f64> = experiment
+        .runs
+        .iter()
+        .flat_map(|run| run.tracks[k].value.iter().map(|y| y.abs()))
+        .collect();
+    let most = sizes.iter().copied().fold(0.0, f64::max);
+    sizes.retain(|y| *y > OFF * most);
+    sizes.sort_by(f64::total_cmp);
+    let (Some(first), Some(last)) = (sizes.first(), sizes.last()) else { return };
+    // What hardly changes has no thirds.
+    if last - first < 0.1 * last {
+        return;
+    }
+    let (low, high) = (sizes[sizes.len() / 3], sizes[2 * sizes.len() / 3]);
+    let size = |run: usize, t: f64| reading(experiment, run, k, t).abs();
+    for (name, from, until) in
+        [("low", OFF * most, low), ("middle", low, high), ("high", high, f64::INFINITY)]
+    {
+        let holds = each(experiment, |run, t| (from..until).contains(&size(run, t)));
+        all.push(Regime { name: format!("{column} {name}"), holds });
+    }
+}
+
+fn of_command(experiment: &Experiment, k: usize, column: &str, all: &mut Vec<Regime>) {
+    let values = || experiment.runs.iter().flat_map(|run| run.tracks[k].value.iter().copied());
+    let (low, high) =
+        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if high - low < 1e-9 {
+        return;
+    }
+    let share = |run: usize, t: f64| (reading(experiment, run, k, t) - low) / (high - low);
+    let before =
+        |run: usize| (AROUND.0 * interval_s(&experiment.runs[run].tracks[k])).max(AROUND.1);
+    let switched =
+        |run: usize, t: f64| (share(run, t) - share(run, t - before(run))).abs() > SWITCHED;
+    let mut add = |name: &str, holds| all.push(Regime { name: format!("{column} {name}"), holds });
+    add("switched", each(experiment, switched));
+    add("at its upper end", each(experiment, |run, t| share(run, t) > 0.99));
+    add("at its lower end", each(experiment, |run, t| share(run, t) < 0.01));
+}
+
+/// Whether each sample is read while its quantity changes.
+pub(crate) fn changing(experiment: &Experiment) -> Vec<bool> {
+    let samples = &experiment.samples;
+    let rate = |i: usize| -> f64 {
+        let sample = &samples[i];
+        let same =
+            |j: usize| samples.get(j).filter(|s| (s.run, s.sensor) == (sample.run, sample.sensor));
+        let before = i.checked_sub(1).and_then(same).unwrap_or(sample);
+        let after = same(i + 1).unwrap_or(sample);
+        let dt = after.time_s - before.time_s;
+        if dt > 0.0 { (after.value - before.value).abs() / dt } else { 0.0 }
+    };
+    let rates: Vec<f64> = (0..samples.len()).map(rate).collect();
+    let mut largest = std::collections::HashMap::new();
+    for (sample, rate) in samples.iter().zip(&rates) {
+        let of: &mut f64 = largest.entry((sample.run, sample.sensor)).or_default();
+        *of = of.max(*rate);
+    }
+    let own = samples.iter().zip(&rates);
+    own.map(|(sample, rate)| *rate > CHANGING * largest[&(sample.run, sample.sensor)]).collect()
+}

@@ -1,0 +1,151 @@
+//! The first look at every effect: what it could gain, from one or two simulations and linear algebra.
+//!
+//! **Equation** the score test. With `d` what an effect of a typical strength changes in the whitened readings, `e` the
+//! whitened residuals without it, and `P = I - N (N'N + S^-2)^-1 N'` that takes out what the tolerances (sensitivities `N`)
+//! could take up, the effect with strength `a` gains `(e'e - |P^(1/2)(e - a d)|^2)/2 = a d'e - a^2 d'Pd/2` nats, largest
+//! at `a = d'e/d'Pd`; `e` is at the optimum of the tolerances, where `N'e` is their prior's pull.
+//!
+//! **Assumptions** linear in the strength up to half as much again; both signs and the tolerance itself are tried, the best counts.
+//!
+//! **Sources** Rao 1948 (key `rao1948`).
+
+use crate::catalogue::Candidate;
+use crate::cores::on_all_cores;
+use crate::experiment::Experiment;
+use crate::fit::{Fit, Likelihood, curvature};
+use crate::unknown::Unknown;
+use nalgebra::{DMatrix, DVector};
+use std::collections::HashSet;
+
+/// Directions that agree better than this may be those of one effect.
+const PARALLEL: f64 = 0.99;
+/// Most strengths over the typical one.
+const MOST: f64 = 1.5;
+
+/// What the first look says about a candidate.
+#[derive(Debug, Clone)]
+pub struct Screened {
+    /// Its place among the candidates.
+    pub candidate: usize,
+    /// Coordinate that gained most.
+    pub start: f64,
+    /// Nats that it may gain.
+    pub gain: f64,
+    /// What it changes, without what the tolerances take up.
+    pub direction: DVector<f64>,
+}
+
+/// What is there without the candidates.
+pub struct Without<'a> {
+    /// The experiment.
+    pub experiment: &'a Experiment,
+    /// What was fitted.
+    pub unknowns: &'a [Unknown],
+    /// How.
+    pub likelihood: &'a Likelihood,
+    /// The fit.
+    pub fit: &'a Fit,
+}
+
+impl Without<'_> {
+    /// The first look at candidates, best first.
+    pub fn screen(&self, all: &[Candidate], open: &[usize]) -> Vec<Screened> {
+        let Some(factor) = curvature(&self.fit.sensitivity, self.unknowns).cholesky() else {
+            return Vec::new();
+        };
+        let n = &self.fit.sensitivity;
+        let without = |d: &DVector<f64>| d - n * factor.solve(&n.tr_mul(d));
+        let looked = on_all_cores(open.len(), |k| {
+            let candidate = &all[open[k]];
+            let mut best: Option<Screened> = None;
+            for start in strengths(candidate) {
+                let Some(d) = self.changes(candidate, start) else { continue };
+                let direction = without(&d);
+                let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
+                if size < 1e-12 {
+                    continue;
+                }
+                let a = (along / size).clamp(0.0, MOST);
+                let gain = a * along - 0.5 * a * a * size;
+                if best.as_ref().is_none_or(|best| gain > best.gain) {
+                    let start = candidate.scaled(start, a);
+                    best = Some(Screened { candidate: open[k], start, gain, direction });
+                }
+            }
+            best
+        });
+        let mut looked: Vec<Screened> = looked.into_iter().flatten().collect();
+        looked.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        // Of one effect at one place the best variant.
+        let mut seen = HashSet::new();
+        looked.retain(|screened| {
+            let candidate = &all[screened.candidate];
+            seen.insert((candidate.id, candidate.component.as_str()))
+        });
+        looked
+    }
+
+    /// Change of the whitened readings by a candidate.
+    fn changes(&self, candidate: &Candidate, coordinate: f64) -> Option<DVector<f64>> {
+        let own = &candidate.unknown;
+        let kept = (0..self.unknowns.len()).filter(|&i| self.unknowns[i].target != own.target);
+        let (mut unknowns, mut at): (Vec<Unknown>, Vec<f64>) =
+            kept.map(|i| (self.unknowns[i].clone(), self.fit.at[i])).unzip();
+        for beside in &candidate.beside {
+            unknowns.push(beside.clone());
+            at.push(beside.start);
+        }
+        unknowns.push(own.clone());
+        at.push(coordinate);
+        let mut own = candidate.beside.iter().chain([own]);
+        let readings = if own.any(|unknown| self.experiment.is_simulated(&unknown.target)) {
+            self.experiment.readings(&unknowns, &at).ok()?
+        } else {
+            self.experiment.observed(&self.fit.simulated, &unknowns, &at)
+        };
+        let z = |i: usize| (readings[i] - self.fit.readings[i]) / self.likelihood.sigma[i];
+        Some(self.likelihood.whitened(z))
+    }
+}
+
+/// Coordinates at which it is tried.
+fn strengths(candidate: &Candidate) -> Vec<f64> {
+    let unknown = &candidate.unknown;
+    vec![unknown.mean - 0.7 * unknown.sd, unknown.mean + 0.7 * unknown.sd]
+}
+
+/// The best of the first look, and what points the same way as the best one.
+pub fn kept(looked: &[Screened], most: usize) -> Vec<&Screened> {
+    let Some(best) = looked.first() else { return Vec::new() };
+    let rivals = |screened: &&Screened| {
+        let cosine = screened.direction.dot(&best.direction)
+            / (screened.direction.norm() * best.direction.norm()).max(1e-300);
+        cosine > PARALLEL
+    };
+    let mut kept: Vec<&Screened> = looked.iter().take(most).collect();
+    kept.extend(looked.iter().skip(most).filter(rivals).take(most / 2));
+    kept
+}
+
+/// The two effects that together gain most, by the first look at each: places in `looked`.
+pub fn pairs(looked: &[Screened], e: &DVector<f64>, most: usize) -> Vec<(usize, usize, f64)> {
+    let directions: Vec<&DVector<f64>> = looked.iter().map(|s| &s.direction).collect();
+    let mut all = Vec::new();
+    for i in 0..directions.len() {
+        for j in 0..i {
+            let (a, b) = (directions[i], directions[j]);
+            let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
+            let gram = DMatrix::from_row_slice(2, 2, &[aa, ab, ab, bb]);
+            let along = DVector::from_column_slice(&[a.dot(e), b.dot(e)]);
+            // Nearly parallel ones are one.
+            if ab * ab > 0.98 * aa * bb {
+                continue;
+            }
+            let Some(x) = gram.cholesky().map(|g| g.solve(&along)) else { continue };
+            all.push((j, i, 0.5 * x.dot(&along)));
+        }
+    }
+    all.sort_by(|a, b| b.2.total_cmp(&a.2));
+    all.truncate(most);
+    all
+}

@@ -1,0 +1,299 @@
+//! Name: which effects explain the difference; one after the other, with a step back, and pairs that hide each other.
+
+mod conclude;
+mod rank;
+mod steps;
+
+use crate::catalogue::Candidate;
+use crate::error::ExplainError;
+use crate::experiment::Experiment;
+use crate::explain::{Finding, Stopwatch, Verdict};
+use crate::fit::{Care, Fit, Likelihood, Slopes, fit};
+use crate::screen::{Screened, Without, kept};
+use crate::significance::differs;
+use crate::trial::{Common, Start, Tried};
+use crate::unknown::Unknown;
+
+/// Residuals that are not quite what they are taken for speak too loudly: their likelihood is taken to the power of one over
+/// this, against priors that count in full; over more where even the best effect leaves more than sigma.
+const TEMPERATURE: f64 = 2.0;
+/// ... and over this times the root of the nats that the best effect gains: the more there is to explain, the more the flaws of
+/// what explains it weigh.
+const LOUD: f64 = 0.125;
+/// Evidence by which an effect must beat the model without it, nats.
+const WINS: f64 = 4.0;
+/// The same, where it foretells no better than strained tolerances.
+const STRAINS: f64 = 8.0;
+/// Log predictive density by which it must beat it, nats; and as many standard errors.
+const FORETELLS: (f64, f64) = (4.0, 2.0);
+/// An effect that brings less than this is taken out again, nats.
+const KEEPS: f64 = 2.0;
+/// Evidence within which two effects are not told apart, nats.
+const TOGETHER: f64 = 3.0;
+/// ... or this share of what the winner gains: no model is right to more than that.
+const NEARLY: f64 = 0.04;
+/// Effects whose residuals on samples that were not fitted are so many times those of the best, and take away so much less
+/// of the discrepancy there, are refuted.
+const AS_WELL: (f64, f64) = (2.0, 0.25);
+/// An effect that lies so many standard deviations from the middle of its range is no explanation.
+const BEYOND: f64 = 3.0;
+/// Values within so many standard deviations of what is plausible are equally so.
+const PLAUSIBLE: f64 = 2.0;
+/// Sensitivities whose directions agree better than this are not told apart.
+const PARALLEL: f64 = 0.99;
+/// The least reduction of the error on samples that were not fitted.
+const REDUCTION: f64 = 0.02;
+/// Residuals beyond this many standard deviations (root mean square) are a discrepancy.
+pub(crate) const DIFFERS: f64 = 1.3;
+/// Without an effect that explains it, a discrepancy below this is one of the tolerances.
+const UNEXPLAINED: f64 = 1.6;
+/// A discrepancy is explained where an effect takes away this share of it.
+const EXPLAINED: f64 = 0.5;
+/// ... or leaves no more than this, standard deviations.
+const LEAVES: f64 = 1.6;
+const MOST_EFFECTS: usize = 5;
+/// Candidates that are compared in earnest after the first look.
+const MOST_COMPARED: usize = 6;
+/// Pairs that are compared in earnest, and candidates of which they are made.
+const PAIRS: (usize, usize) = (3, 8);
+/// An unknown that can move no more than this in all samples together, standard deviations, is left out.
+const MOVES: f64 = 0.1;
+
+/// What the search settled on.
+pub(crate) struct Settled {
+    pub(crate) verdict: Verdict,
+    pub(crate) because: String,
+    /// Places among the candidates.
+    pub(crate) taken: Vec<usize>,
+    pub(crate) effects: Vec<Finding>,
+    pub(crate) class: Vec<Finding>,
+    pub(crate) tried: Vec<Finding>,
+    /// Readings with the tolerances fitted, without an effect.
+    pub(crate) null_readings: Vec<f64>,
+    /// The unknowns of the last fit, and their values.
+    pub(crate) chosen: Option<(Vec<Unknown>, Vec<f64>)>,
+}
+
+impl Settled {
+    /// Every unknown of the last fit: its name, value, and distance from the middle of its range in standard deviations.
+    pub(crate) fn strained(&self) -> Vec<(String, f64, f64)> {
+        let of =
+            |(u, at): (&Unknown, &f64)| (u.target.to_string(), u.value(*at), (at - u.mean) / u.sd);
+        let chosen = self.chosen.iter().flat_map(|(unknowns, at)| unknowns.iter().zip(at).map(of));
+        let mut all: Vec<_> = chosen.collect();
+        all.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+        all
+    }
+}
+
+/// One round: what could be added next.
+struct Round {
+    null: Fit,
+    looked: Vec<Screened>,
+    /// Residuals without it on samples that were not fitted.
+    null_z: f64,
+    tried: Vec<Tried>,
+    findings: Vec<Finding>,
+}
+
+impl Round {
+    fn wins(&self) -> bool {
+        self.findings.first().is_some_and(|f| {
+            let (nats, errors) = FORETELLS;
+            let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
+            // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
+            f.evidence > STRAINS || (f.evidence > WINS && foretells)
+        })
+    }
+}
+
+pub(crate) struct Search<'a> {
+    experiment: &'a Experiment,
+    all: &'a [Candidate],
+    base: Vec<Unknown>,
+    likelihood: Likelihood,
+    validated: Vec<usize>,
+    taken: Vec<usize>,
+    slopes: Slopes,
+}
+
+impl<'a> Search<'a> {
+    pub(crate) fn new(
+        experiment: &'a Experiment,
+        all: &'a [Candidate],
+        base: Vec<Unknown>,
+        likelihood: Likelihood,
+        validated: Vec<usize>,
+    ) -> Self {
+        let (taken, slopes) = (Vec::new(), Slopes::new());
+        Self { experiment, all, base, likelihood, validated, taken, slopes }
+    }
+
+    pub(crate) fn run(&mut self, watch: &mut Stopwatch) -> Result<Settled, ExplainError> {
+        let mut settled = Settled {
+            verdict: Verdict::Nothing,
+            because: String::new(),
+            taken: Vec::new(),
+            effects: Vec::new(),
+            class: Vec::new(),
+            tried: Vec::new(),
+            null_readings: Vec::new(),
+            chosen: None,
+        };
+        while self.taken.len() < MOST_EFFECTS {
+            let is_first = self.taken.is_empty();
+            self.likelihood.filter.clear();
+            self.likelihood.temperature = 1.0;
+            let care = if is_first { Care::Alone } else { Care::Quick };
+            let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
+            watch.lap("tolerances");
+            let z = self.z(&null.readings);
+            if is_first {
+                settled.null_readings.clone_from(&null.readings);
+            }
+            let worst =
+                differs(self.experiment, &self.likelihood.sigma, &null.readings, &self.validated);
+            if is_first {
+                self.leave_out(&null);
+            }
+            let Some(round) = self.round(null, z, watch)? else {
+                if is_first {
+                    settled.because = format!(
+                        "residuals are {z:.2} standard deviations (root mean square), and no effect would change that"
+                    );
+                }
+                break;
+            };
+            if is_first {
+                self.conclude(&round, worst, &mut settled);
+                settled.tried.clone_from(&round.findings);
+                if settled.verdict == Verdict::Unexplained && self.pair(&round, &mut settled)? {
+                    watch.lap("pairs");
+                    continue;
+                }
+            }
+            let named = matches!(settled.verdict, Verdict::Named | Verdict::Class);
+            if !(named && round.wins()) {
+                break;
+            }
+            // Of a class the most plausible one.
+            let head =
+                settled.class.first().filter(|_| is_first && settled.verdict == Verdict::Class);
+            let is_head =
+                |f: &Finding| head.is_some_and(|h| (h.id, &h.component) == (f.id, &f.component));
+            let k = round.findings.iter().position(is_head).unwrap_or(0);
+            self.take(&round.tried[k], &round.findings[k..=k], &mut settled);
+            self.step_back(&mut settled)?;
+            watch.lap("step back");
+            if settled.verdict == Verdict::Class {
+                break;
+            }
+        }
+        settled.taken.clone_from(&self.taken);
+        Ok(settled)
+    }
+
+    fn z(&self, readings: &[f64]) -> f64 {
+        self.likelihood.rms(self.experiment, readings, &self.validated)
+    }
+
+    /// The largest reduction of the error of a sensor on samples that were not fitted, relative.
+    fn reduction(&self, before: &[f64], after: &[f64]) -> f64 {
+        let of = |sensor: usize| {
+            let own =
+                self.validated.iter().filter(|&&i| self.experiment.samples[i].sensor == sensor);
+            let own: Vec<usize> = own.copied().collect();
+            let rms = |readings| self.likelihood.rms(self.experiment, readings, &own);
+            if own.is_empty() { 0.0 } else { 1.0 - rms(after) / rms(before).max(1e-300) }
+        };
+        (0..self.experiment.sensors.sensor.len()).map(of).fold(0.0, f64::max)
+    }
+
+    /// Leaves out what can hardly change anything.
+    fn leave_out(&mut self, null: &Fit) {
+        let moves = |j: usize| null.sensitivity.column(j).norm() * self.base[j].sd;
+        let kept = (0..self.base.len()).filter(|&j| moves(j) > MOVES);
+        let started = kept.map(|j| Unknown { start: null.at[j], ..self.base[j].clone() });
+        self.base = started.collect();
+        self.slopes.clone_from(&null.slopes);
+    }
+
+    fn common(&self) -> Common<'_> {
+        Common {
+            experiment: self.experiment,
+            base: &self.base,
+            all: self.all,
+            likelihood: &self.likelihood,
+            slopes: &self.slopes,
+        }
+    }
+
+    /// Looks at everything, compares the best in earnest.
+    fn round(
+        &mut self,
+        null: Fit,
+        null_z: f64,
+        watch: &mut Stopwatch,
+    ) -> Result<Option<Round>, ExplainError> {
+        let open: Vec<usize> = (0..self.all.len()).filter(|i| !self.taken.contains(i)).collect();
+        let quick = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
+        let without = Without {
+            experiment: self.experiment,
+            unknowns: &self.base,
+            likelihood: &self.likelihood,
+            fit: &quick,
+        };
+        let looked = without.screen(self.all, &open);
+        watch.lap("screen");
+        let could = looked.first().map_or(0.0, |s| s.gain);
+        if could < WINS && null_z < UNEXPLAINED {
+            return Ok(None);
+        }
+        let starts: Vec<Start> = kept(&looked, MOST_COMPARED)
+            .into_iter()
+            .map(|s| Start { candidates: vec![s.candidate], at: vec![s.start], earlier: None })
+            .collect();
+        // At first every sample counts in full, so that each candidate shows how well it can fit.
+        let mut rough = self.common().fits(&starts, Care::Quick)?;
+        watch.lap("fits");
+        rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        rough.truncate(MOST_COMPARED);
+        let none = Round { null, looked, null_z, tried: Vec::new(), findings: Vec::new() };
+        let Some(best) = rough.first() else { return Ok(Some(none)) };
+        self.likelihood.learn(self.experiment, &best.fit.readings);
+        let square = |readings: &[f64]| {
+            let z = self.likelihood.z(self.experiment, readings);
+            self.likelihood.whitened(|i| z[i]).norm_squared()
+        };
+        let gain = 0.5 * (square(&quick.readings) - square(&best.fit.readings)).max(0.0);
+        let left =
+            self.likelihood.rms(self.experiment, &best.fit.readings, &self.likelihood.fitted);
+        self.likelihood.temperature = (TEMPERATURE * left.powi(2).max(1.0)).max(LOUD * gain.sqrt());
+        let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
+        let again = rough.into_iter().map(|tried| Start {
+            candidates: tried.candidates.clone(),
+            at: vec![0.0; tried.candidates.len()],
+            earlier: Some(tried),
+        });
+        let again: Vec<Start> = again.collect();
+        let mut tried = self.common().fits(&again, Care::Thorough)?;
+        watch.lap("fits");
+        let null_z = self.z(&null.readings);
+        let findings = self.ranked(&null, &mut tried);
+        Ok(Some(Round { null, null_z, tried, findings, ..none }))
+    }
+
+    fn take(&mut self, tried: &Tried, findings: &[Finding], settled: &mut Settled) {
+        self.taken.extend(&tried.candidates);
+        settled.effects.extend(findings.iter().cloned());
+        let started = tried.unknowns.iter().zip(&tried.fit.at);
+        self.base = started.map(|(u, at)| Unknown { start: *at, ..u.clone() }).collect();
+        self.slopes.clone_from(&tried.fit.slopes);
+        settled.chosen = Some((tried.unknowns.clone(), tried.fit.at.clone()));
+    }
+}
+
+/// Squared residuals beyond those that noise explains.
+fn excess(z: f64) -> f64 {
+    (z * z - 1.0).max(0.0)
+}

@@ -1,0 +1,110 @@
+//! What was tried, best first.
+
+use super::{AS_WELL, NEARLY, Search, TOGETHER, excess};
+use crate::elpd;
+use crate::explain::{Finding, values_beside};
+use crate::fit::Fit;
+use crate::trial::Tried;
+
+impl Search<'_> {
+    /// Ranges of the fitted samples that belong to one block.
+    fn blocks(&self) -> Vec<(usize, usize)> {
+        let fitted = &self.likelihood.fitted;
+        let of = |k: usize| {
+            let sample = &self.experiment.samples[fitted[k]];
+            (sample.run, sample.sensor)
+        };
+        let mut blocks = Vec::new();
+        let mut from = 0;
+        for k in 1..=fitted.len() {
+            if k == fitted.len() || fitted[k] != fitted[k - 1] + 1 || of(k) != of(k - 1) {
+                blocks.push((from, k));
+                from = k;
+            }
+        }
+        // A record in one piece is cut.
+        let most = fitted.len().div_ceil(8).max(1);
+        let cut = |(from, until): (usize, usize)| {
+            let parts = (until - from).div_ceil(most);
+            let at = move |i: usize| from + (until - from) * i / parts;
+            (0..parts).map(move |i| (at(i), at(i + 1)))
+        };
+        blocks.into_iter().flat_map(cut).collect()
+    }
+
+    /// Findings of what was tried, best first; what does badly on samples that were not fitted is refuted and comes last.
+    pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>) -> Vec<Finding> {
+        let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
+        let null_z = self.z(&null.readings);
+        let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
+        let refuted = |t: &Tried| {
+            let z = self.z(&t.fit.readings);
+            z > AS_WELL.0 * least.max(1.0) && share(z) - share(least) > AS_WELL.1
+        };
+        tried.sort_by(|a, b| {
+            let evidence = || b.fit.log_evidence.total_cmp(&a.fit.log_evidence);
+            refuted(a).cmp(&refuted(b)).then_with(evidence)
+        });
+        let Some(best) = tried.first() else { return Vec::new() };
+        // Where a share of the gain does not tell effects apart, it does not make them improbable either.
+        let gain = best.fit.log_evidence - null.log_evidence;
+        let loud = (NEARLY * gain / TOGETHER).max(1.0);
+        let over = |evidence: f64| ((evidence - best.fit.log_evidence) / loud).exp();
+        let open = tried.iter().filter(|t| !refuted(t)).map(|t| over(t.fit.log_evidence));
+        let total = open.sum::<f64>() + over(null.log_evidence);
+        let blocks = self.blocks();
+        let of_null = elpd::by_block(null, &self.base, &blocks);
+        let finding = |t: &Tried| -> Vec<Finding> {
+            let elpd = elpd::by_block(&t.fit, &t.unknowns, &blocks);
+            let (elpd, elpd_error) = elpd::difference(&elpd, &of_null);
+            let one = |(&k, &place): (&usize, &usize)| {
+                let candidate = &self.all[k];
+                Finding {
+                    id: candidate.id,
+                    component: candidate.component.clone(),
+                    words: candidate.words,
+                    parameter: candidate.parameter.0,
+                    unit: candidate.parameter.1,
+                    estimate: t.fit.estimate(
+                        &t.unknowns,
+                        place,
+                        elpd::jackknife(&t.fit, &t.unknowns, &blocks, place),
+                    ),
+                    beside: values_beside(candidate, &t.unknowns, &t.fit.at),
+                    probability: if refuted(t) { 0.0 } else { over(t.fit.log_evidence) / total },
+                    evidence: t.fit.log_evidence - null.log_evidence,
+                    elpd,
+                    elpd_error,
+                    strain: candidate.strain(t.fit.at[place]),
+                    beyond: (t.fit.at[place] - candidate.unknown.mean).abs() / candidate.unknown.sd,
+                    validation_z: self.z(&t.fit.readings),
+                    reduction: self.reduction(&null.readings, &t.fit.readings),
+                    flags: flags(t, place),
+                    separates: candidate.separates,
+                }
+            };
+            t.candidates.iter().zip(&t.places).map(one).collect()
+        };
+        tried.iter().flat_map(finding).collect()
+    }
+}
+
+/// What the data leave open about a fitted value.
+fn flags(tried: &Tried, place: usize) -> Vec<String> {
+    let (fit, unknowns) = (&tried.fit, &tried.unknowns);
+    let mut flags = Vec::new();
+    let sd = |i: usize| fit.covariance[(i, i)].max(0.0).sqrt();
+    if fit.at_bound(unknowns, place) {
+        flags.push("at the bound of its range".to_owned());
+    }
+    if sd(place) > 0.7 * unknowns[place].sd {
+        flags.push("the data hardly say more than its range".to_owned());
+    }
+    for i in (0..unknowns.len()).filter(|&i| i != place) {
+        let correlation = fit.covariance[(i, place)] / (sd(i) * sd(place)).max(1e-300);
+        if correlation.abs() > 0.95 {
+            flags.push(format!("tied to {} (correlation {correlation:.2})", unknowns[i].target));
+        }
+    }
+    flags
+}
