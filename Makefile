@@ -24,7 +24,7 @@ test-doc: ## Rust documentation builds without warnings, its examples run
 	cargo test --workspace --doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 
-$(VENV)/.installed: crates/py/pyproject.toml
+$(VENV)/.installed: Makefile crates/py/pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check "maturin>=1.9.4,<2" numpy \
 		"pytest>=8" "mypy>=1.16" pandas pandas-stubs polars pyarrow xarray matplotlib mcap \

@@ -359,6 +359,10 @@ fn a_sweep_leaves_a_table_goes_on_and_runs_one_member_in_full() {
     let column = rows.next().unwrap().iter().position(|n| *n == "network.heat_lost_kwh").unwrap();
     let told: f64 = rows.nth(3).unwrap()[column].parse().unwrap();
     assert_eq!(told.to_bits(), lost.to_bits());
+    // Beside the results of another ensemble it would be nobody's member.
+    std::fs::write(dir.path().join("variations.toml"), VARIATIONS.replace("2min", "3min")).unwrap();
+    let output = anergy(&[&sweep[..], &["--member", "3"]].concat(), dir.path());
+    assert!(text(&output.stderr).contains("other variations"), "{}", text(&output.stderr));
 }
 
 #[test]

@@ -70,6 +70,12 @@ pub struct Definition {
     pub document: Value,
 }
 
+/// Names of columns that are not of variations; an empty one is no name.
+const OF_RESULTS: [&str; 5] = ["member", "id", "time_s", "error", ""];
+/// Members of an ensemble at most: all of their coordinates are in memory.
+pub const MOST_MEMBERS: usize = 10_000_000;
+const TOO_MANY: &str = "at most 10 000 000";
+
 const SECTIONS: [&str; 5] = ["format", "ensemble", "run", "keep", "variation"];
 
 impl Definition {
@@ -142,6 +148,10 @@ impl Definition {
             (true, Some(0)) => {
                 report(&["members"], "ensemble: members = 0 is no ensemble".into(), "at least 1");
             }
+            (true, Some(members)) if members > MOST_MEMBERS => {
+                let message = format!("ensemble: members = {members} is too many");
+                report(&["members"], message, TOO_MANY);
+            }
             (false, Some(_)) => {
                 let hint = "it is for monte_carlo and latin_hypercube; others have as many as their values make";
                 report(&["members"], "ensemble: members belongs to samples".into(), hint);
@@ -180,6 +190,7 @@ impl Definition {
             return;
         }
         let mut first: Option<(usize, &str)> = None;
+        let mut members = Some(1_usize);
         for variation in &self.variations {
             let name = &variation.name;
             let Some(count) = variation.spread.count() else {
@@ -190,6 +201,17 @@ impl Definition {
                 reader.report(Diagnostic::new(message, place).with_hint(hint));
                 continue;
             };
+            // Once, at the one by which there are too many.
+            let within = |members: &usize| *members <= MOST_MEMBERS;
+            let next = members.and_then(|m| m.checked_mul(count)).filter(within);
+            let next = if design == Design::List { Some(count).filter(within) } else { next };
+            if members.is_some() && next.is_none() {
+                let place = variation.places.of_field(&["count", "values"]);
+                let message =
+                    format!("variation \"{name}\": its {count} values make too many members");
+                reader.report(Diagnostic::new(message, place).with_hint(TOO_MANY));
+            }
+            members = next;
             let (expected, other) = *first.get_or_insert((count, name));
             if design == Design::List && count != expected {
                 let place = variation.places.of_field(&["values", "count"]);
@@ -310,8 +332,13 @@ fn variation(
             "give it a name of its own",
         );
     }
-    if name == "member" || name == "error" || name.is_empty() {
+    if OF_RESULTS.contains(&name.as_str()) {
         return wrong("name", "the name is one of a column of the results", "choose another one");
+    }
+    let like_indicator = name.contains('.') && !name.contains(char::is_whitespace);
+    if like_indicator && !parameters.contains(&name) {
+        let message = "the name looks like that of an indicator, component.quantity";
+        return wrong("name", message, "write it without a point, or leave it out");
     }
     Ok(Variation { name, parameters, how: entry.how, spread, places })
 }

@@ -4,11 +4,11 @@
 //! depends on when or where it runs: values come from the seed of the ensemble, and so do the seeds of its random
 //! numbers, `mix(seed, member, name)`, cut to 52 bits so that files of every kind can hold them.
 
-use crate::definition::{Definition, How, Random, Variation};
+use crate::definition::{Definition, Random};
 use crate::member::{self, Outcome, Wanted};
 use crate::members::Members;
-use anergy_core::units::{Unit, is_difference, split_suffix};
-use anergy_recording::selection::{choose, glob};
+use crate::target::{self, Target};
+use anergy_recording::selection::choose;
 use anergy_simulation::build::build;
 use anergy_simulation::diagnostic::{Diagnostic, Diagnostics};
 use anergy_simulation::model::Model;
@@ -16,7 +16,7 @@ use anergy_simulation::overlay::Change;
 use anergy_simulation::run::RunOptions;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
-use std::collections::HashMap;
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -25,6 +25,8 @@ use thiserror::Error;
 
 /// Real time between two looks at whether to go on.
 const LOOK_INTERVAL: Duration = Duration::from_millis(50);
+/// What to do when no member can be built.
+const NO_MEMBER: &str = "neither the first member nor the one in the middle nor the last can be built: change the values";
 /// Outcomes that wait for whoever keeps them, per thread: more would only take memory.
 const WAITING: usize = 2;
 
@@ -37,13 +39,6 @@ pub enum EnsembleError {
     /// The definition does not fit the model.
     #[error("the variations: {0}")]
     Variations(Diagnostics),
-}
-
-/// A parameter of the model, and the unit of the values it is given in.
-#[derive(Debug, Clone, PartialEq)]
-struct Target {
-    parameter: String,
-    unit: Option<Unit>,
 }
 
 /// A model and its variations.
@@ -67,18 +62,7 @@ impl Ensemble {
     /// Problems of the model, or of the definition with places in its text.
     pub fn new(model: Arc<Model>, definition: Definition) -> Result<Self, EnsembleError> {
         let plan = build(&model).map_err(EnsembleError::Model)?;
-        let mut problems = Vec::new();
-        let parameters = model.parameters();
-        let known: HashMap<&str, &Value> =
-            parameters.iter().map(|(name, value)| (name.as_str(), value)).collect();
-        let targets = definition.variations.iter().map(|variation| {
-            let found = targets(variation, &parameters, &known, &model);
-            found.unwrap_or_else(|problem| {
-                problems.push(problem);
-                Vec::new()
-            })
-        });
-        let targets = targets.collect();
+        let (targets, mut problems) = target::find(&definition, &model);
         let patterns = &definition.keep.channels;
         let channels = match choose(plan.channels(), patterns, &[]) {
             Ok(_) if patterns.is_empty() => Vec::new(),
@@ -94,9 +78,15 @@ impl Ensemble {
         }
         let draws = match definition.random() {
             Random::Same => Vec::new(),
-            Random::Own => model.seeds().into_iter().map(|(name, _)| name).collect(),
+            Random::Own => {
+                // A seed that varies is not drawn.
+                let varied: HashSet<&str> =
+                    targets.iter().flatten().map(|target| target.parameter.as_str()).collect();
+                let names = model.seeds().into_iter().map(|(name, _)| name);
+                names.filter(|name| !varied.contains(seed_of(name).as_str())).collect()
+            }
         };
-        Ok(Self {
+        let ensemble = Self {
             members: Members::of(&definition),
             targets,
             draws,
@@ -108,7 +98,36 @@ impl Ensemble {
             },
             model,
             definition,
-        })
+        };
+        match ensemble.impossible() {
+            Some(problem) => Err(EnsembleError::Variations(Diagnostics(vec![problem]))),
+            None => Ok(ensemble),
+        }
+    }
+
+    /// Why no member can be, as far as a few tell: the first, one in the middle, the last.
+    fn impossible(&self) -> Option<Diagnostic> {
+        let some = [0, self.len() / 2, self.len().saturating_sub(1)];
+        let mut message = None;
+        for member in some.into_iter().filter(|member| *member < self.len()) {
+            let why = member::check(&self.model, &self.changes(member)).err()?;
+            message.get_or_insert(why);
+        }
+        let message = message?;
+        // The variation that is impossible alone is the culprit.
+        let values = self.values(0);
+        let alone = self.definition.variations.iter().zip(&self.targets).zip(&values);
+        for ((variation, targets), value) in alone {
+            let changes: Vec<Change> =
+                targets.iter().map(|target| target.change(variation.how, value)).collect();
+            if let Err(message) = member::check(&self.model, &changes) {
+                let place = variation.places.of_field(&["values", "low", "mean"]);
+                let message = format!("variation \"{}\": {message}", variation.name);
+                return Some(Diagnostic::new(message, place).with_hint(NO_MEMBER));
+            }
+        }
+        let message = format!("the variations together: {message}");
+        Some(Diagnostic::new(message, Some(0..0)).with_hint(NO_MEMBER))
     }
 
     /// The model before anything is varied.
@@ -146,23 +165,11 @@ impl Ensemble {
         let mut changes = Vec::new();
         let variations = self.definition.variations.iter().zip(&self.targets);
         for ((variation, targets), value) in variations.zip(self.values(member)) {
-            changes.extend(targets.iter().map(|Target { parameter, unit }| {
-                let parameter = parameter.clone();
-                match (variation.how, value.as_f64()) {
-                    (How::Scale, factor) => {
-                        Change::Scale { parameter, factor: factor.unwrap_or(f64::NAN) }
-                    }
-                    (How::Set, Some(number)) if unit.is_some() => {
-                        let si = unit.map_or(number, |unit| unit.to_si(number));
-                        Change::Set { parameter, value: Value::from(si) }
-                    }
-                    (How::Set, _) => Change::Set { parameter, value: value.clone() },
-                }
-            }));
+            changes.extend(targets.iter().map(|target| target.change(variation.how, &value)));
         }
         let seed = self.definition.ensemble.seed;
         changes.extend(self.draws.iter().map(|name| Change::Set {
-            parameter: format!("{name}.seed"),
+            parameter: seed_of(name),
             value: Value::from(member_seed(seed, member, name)),
         }));
         changes
@@ -180,11 +187,8 @@ impl Ensemble {
 
     /// Runs a member; `None` when `keep_going`, which is asked after every recorded row, said no.
     pub fn run(&self, member: usize, keep_going: &mut dyn FnMut() -> bool) -> Option<Outcome> {
-        let model = self.model.with(&self.changes(member)).map_err(|error| error.to_string());
-        let result = match model {
-            Ok(model) => member::run(&model, self.options, &self.wanted, keep_going)?,
-            Err(message) => Err(message),
-        };
+        let changes = self.changes(member);
+        let result = member::run(&self.model, &changes, self.options, &self.wanted, keep_going)?;
         Some(Outcome { member, values: self.values(member), result })
     }
 
@@ -232,27 +236,39 @@ impl Ensemble {
     }
 
     /// What tells this ensemble from others: a folder of results belongs to one.
-    pub fn identity(&self) -> Value {
-        let plain = self.model.to_plain_toml().unwrap_or_else(|_| self.model.text.to_string());
+    ///
+    /// `writer` is who keeps them: folders of different writers have different files. `controllers` tells those that are
+    /// not in the model.
+    ///
+    /// # Errors
+    /// When the model cannot be written, and so not be recognised.
+    pub fn identity(&self, writer: &str, controllers: Option<&str>) -> Result<Value, Diagnostics> {
         let mut hash = Sha256::new();
-        hash.update(&plain);
+        hash.update(self.model.to_plain_toml()?);
         if let Some(records) = self.model.weather.as_ref().and_then(|w| w.records.as_ref()) {
             hash.update(format!("{records:?}"));
         }
         let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        json!({
+        Ok(json!({
             "program": format!("anergy {}", env!("CARGO_PKG_VERSION")),
+            "writer": writer,
             "model": self.model.name,
             "model_sha256": hash,
+            "controllers": controllers,
             "members": self.len(),
             "variations": self.definition.document,
-        })
+        }))
     }
 }
 
 /// Threads that keep this machine busy.
 pub fn all_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// The parameter with the seed of what draws.
+fn seed_of(name: &str) -> String {
+    format!("{name}.seed")
 }
 
 /// The seed of random numbers of a member: SplitMix64 over the seed of the ensemble, the member and who draws.
@@ -265,103 +281,4 @@ fn member_seed(seed: u32, member: usize, name: &str) -> u64 {
     };
     let start = mix(mix(0, u64::from(seed)), member as u64);
     name.bytes().fold(start, |state, byte| mix(state, u64::from(byte))) >> 12
-}
-
-/// The parameters that a variation means.
-fn targets(
-    variation: &Variation,
-    parameters: &[(String, Value)],
-    known: &HashMap<&str, &Value>,
-    model: &Model,
-) -> Result<Vec<Target>, Diagnostic> {
-    let place = variation.places.of_field(&["parameter", "parameters"]);
-    let problem = |message: String, hint: String| {
-        let message = format!("variation \"{}\": {message}", variation.name);
-        Diagnostic::new(message, place.clone()).with_hint(hint)
-    };
-    let mut found: Vec<Target> = Vec::new();
-    for written in &variation.parameters {
-        let before = found.len();
-        let (pattern, unit) = in_si(written);
-        for (form, unit) in [(written.as_str(), None), (pattern.as_str(), unit)] {
-            if found.len() > before {
-                break;
-            }
-            let matching: Vec<&str> = match form.contains(['*', '?']) {
-                false => known.get_key_value(form).into_iter().map(|(name, _)| *name).collect(),
-                // A pattern means the numbers.
-                true => parameters
-                    .iter()
-                    .filter(|(name, value)| value.is_number() && glob(form, name))
-                    .map(|(name, _)| name.as_str())
-                    .collect(),
-            };
-            found
-                .extend(matching.iter().map(|name| Target { parameter: (*name).to_owned(), unit }));
-        }
-        if found.len() == before {
-            return Err(problem(
-                format!("there is no parameter \"{written}\""),
-                nearest(written, known),
-            ));
-        }
-        if variation.how == How::Scale && unit.is_some_and(|unit| unit.suffix == "degc") {
-            let hint = "scale it in K, or set values".to_owned();
-            return Err(problem(format!("\"{written}\" in degC cannot be scaled"), hint));
-        }
-    }
-    for target in &found {
-        if model.drivers.iter().any(|driver| driver.signal == target.parameter) {
-            let message = format!(
-                "\"{}\" follows a schedule or a series: its own value is never used",
-                target.parameter
-            );
-            return Err(problem(
-                message,
-                "take the schedule out of the model, or vary something else".into(),
-            ));
-        }
-    }
-    Ok(found)
-}
-
-/// A name in the SI unit of its field, and the unit it was written in.
-fn in_si(written: &str) -> (String, Option<Unit>) {
-    let (component, field) = written.rsplit_once('.').unwrap_or(("", written));
-    let other = split_suffix(field).and_then(|(stem, suffix)| {
-        let unit =
-            Unit::find(suffix).filter(|unit| unit.suffix != "degc" || !is_difference(stem))?;
-        Some((stem, unit))
-    });
-    match other {
-        Some((stem, unit)) => {
-            let field =
-                if unit.si.is_empty() { stem.to_owned() } else { format!("{stem}_{}", unit.si) };
-            (format!("{component}.{field}"), Some(unit))
-        }
-        None => (written.to_owned(), None),
-    }
-}
-
-/// A hint for a parameter that does not exist.
-fn nearest(written: &str, known: &HashMap<&str, &Value>) -> String {
-    let best = known
-        .keys()
-        .map(|name| (strsim::damerau_levenshtein(written, name), *name))
-        .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
-        .min();
-    if let Some((_, name)) = best {
-        return format!("did you mean `{name}`?");
-    }
-    let component = written.rsplit_once('.').map_or(written, |(component, _)| component);
-    let mut fields: Vec<&str> = known
-        .keys()
-        .filter_map(|name| name.strip_prefix(component)?.strip_prefix('.'))
-        .filter(|field| !field.contains('.'))
-        .collect();
-    fields.sort_unstable();
-    if fields.is_empty() {
-        return "names are those of `anergy check --expand`: component.field".into();
-    }
-    format!("\"{component}\" has {}", fields.join(", "))
 }

@@ -6,7 +6,9 @@
 
 pub mod definition;
 pub mod ensemble;
+pub mod lock;
 pub mod member;
 pub mod members;
 pub mod spread;
 pub mod store;
+mod target;

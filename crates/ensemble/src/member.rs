@@ -6,11 +6,14 @@ use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
 use anergy_recording::selection::glob;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
+use anergy_simulation::overlay::Change;
+use anergy_simulation::plan::Plan;
 use anergy_simulation::run::{self, RunOptions};
 use anergy_simulation::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 /// Recorded rows of chosen channels.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -50,34 +53,45 @@ pub(crate) struct Wanted {
     pub channels: Vec<String>,
 }
 
-/// Runs a model; `None` when it was stopped.
+/// Runs a model with changes; `None` when it was stopped.
 pub(crate) fn run(
-    model: &Model,
+    base: &Model,
+    changes: &[Change],
     options: RunOptions,
     wanted: &Wanted,
     keep_going: &mut dyn FnMut() -> bool,
 ) -> Option<Result<Kept, String>> {
-    // A defect of the program in one member does not take the others along.
-    let outcome = catch_unwind(AssertUnwindSafe(|| kept(model, options, wanted, keep_going)));
-    match outcome {
-        Ok(Ok(kept)) => kept.map(Ok),
-        Ok(Err(message)) => Some(Err(message)),
-        Err(panic) => {
-            let said = panic.downcast_ref::<String>().map(String::as_str);
-            let said =
-                said.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a message");
-            Some(Err(format!("the program failed: {said}")))
-        }
-    }
+    guarded(|| kept(plan(base, changes)?, options, wanted, keep_going)).transpose()
+}
+
+/// Whether there is a model with these changes.
+///
+/// # Errors
+/// Why not.
+pub(crate) fn check(base: &Model, changes: &[Change]) -> Result<(), String> {
+    guarded(|| plan(base, changes).map(|_| ()))
+}
+
+/// A defect of the program in one member does not take the others along.
+fn guarded<T>(member: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(member)).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str);
+        let said = said.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a message");
+        Err(format!("the program failed: {said}"))
+    })
+}
+
+fn plan(base: &Model, changes: &[Change]) -> Result<Arc<Plan>, String> {
+    let model = base.with(changes).map_err(|error| error.to_string())?;
+    build(&model).map_err(|problems| problems.to_string())
 }
 
 fn kept(
-    model: &Model,
+    plan: Arc<Plan>,
     options: RunOptions,
     wanted: &Wanted,
     keep_going: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Kept>, String> {
-    let plan = build(model).map_err(|problems| problems.to_string())?;
     let mut simulation = Simulation::new(plan).map_err(|error| error.to_string())?;
     let mut rows = Rows { wanted: &wanted.channels, chosen: Vec::new(), series: Series::default() };
     let recorder = Box::new(&mut rows);
@@ -142,5 +156,17 @@ impl Recorder for &mut Rows<'_> {
 
     fn finish(self: Box<Self>, _: &Value) -> Result<(), RecordError> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_defect_of_the_program_is_a_failed_member() {
+        let found: Result<(), String> = guarded(|| panic!("index 3 of 2"));
+        assert_eq!(found, Err("the program failed: index 3 of 2".to_owned()));
+        assert_eq!(guarded(|| Ok(1)), Ok(1));
     }
 }

@@ -63,6 +63,24 @@ impl Spread {
             hint,
         };
         let wrong = |field, message, hint| Err(refusal(field, message, hint));
+        let given = [
+            ("low", low),
+            ("high", high),
+            ("mode", mode),
+            ("mean", mean),
+            ("standard_deviation", standard_deviation),
+        ];
+        for (field, value) in given {
+            if let Some(value) = value.filter(|value| !value.is_finite()) {
+                return wrong(field, format!("{field} = {value} is not finite"), "give a number");
+            }
+        }
+        if let (Some(low), Some(high)) = (low, high)
+            && !(high - low).is_finite()
+        {
+            let message = format!("from low = {low} to high = {high} is no finite distance");
+            return wrong("low", message, "move the ends towards each other");
+        }
         let ends = |low: f64, high: f64| {
             let message = || format!("low = {low} is not below high = {high}");
             if low < high { Ok(()) } else { Err(refusal("low", message(), "exchange them")) }
@@ -154,6 +172,17 @@ impl Spread {
             Self::Uniform { count, .. } => *count,
             Self::Normal { .. } | Self::Triangular { .. } => None,
         }
+    }
+
+    /// Smallest and largest value of a distribution, as far as it has some.
+    pub(crate) fn ends(&self) -> Vec<f64> {
+        let ends = match *self {
+            Self::Values(_) => return Vec::new(),
+            Self::Uniform { low, high, .. }
+            | Self::Normal { low, high, .. }
+            | Self::Triangular { low, high, .. } => [low, high],
+        };
+        ends.into_iter().filter(|end| end.is_finite()).collect()
     }
 
     /// Whether all values are numbers.
@@ -279,8 +308,17 @@ mod tests {
             (json!({ "mean": 0.0, "standard_deviation": 1.0, "low": 50.0 }), "low"),
             (json!({ "low": 0.0, "mode": 2.0, "high": 1.0 }), "mode"),
             (json!({ "low": 0.0, "high": 1.0, "count": 1 }), "count"),
+            (json!({ "low": -1e308, "high": 1e308 }), "low"),
         ] {
             assert_eq!(spread(entry.clone()).unwrap_err().field, field, "{entry}");
         }
+        // What no file can say, but a program.
+        let infinite = VariationEntry { high: Some(f64::INFINITY), ..VariationEntry::default() };
+        let infinite =
+            VariationEntry { mean: Some(0.0), standard_deviation: Some(1.0), ..infinite };
+        assert_eq!(Spread::of(&infinite).unwrap_err().field, "high");
+        let none =
+            VariationEntry { low: Some(0.0), mode: Some(f64::NAN), ..VariationEntry::default() };
+        assert_eq!(Spread::of(&none).unwrap_err().field, "mode");
     }
 }

@@ -6,11 +6,15 @@
 //! | `journal.jsonl` | a line per finished member, appended as they finish |
 //! | `members.csv` | a row per member in their order: values, error, indicators; written at the end and when stopped |
 //! | `channels/member-N.csv` | chosen channels of a member |
+//! | `ensemble.lock` | locked while one writes |
 //!
-//! The last line of a killed journal may be torn: its member runs again.
+//! The last line of a killed journal may be torn: its member runs again. Any other line that cannot be read was not left
+//! by this program, and is told instead of being run again.
 
 use crate::ensemble::Ensemble;
+use crate::lock::FolderLock;
 use crate::member::{Kept, Outcome, Series};
+use anergy_simulation::diagnostic::Diagnostics;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, HashSet};
@@ -40,6 +44,27 @@ pub enum StoreError {
         /// What differs.
         what: &'static str,
     },
+    /// Another one writes into the folder.
+    #[error("{} is written by another run: wait for it, or name another folder", folder.display())]
+    Busy {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A line of the journal is not one that this program has written.
+    #[error(
+        "{}:{line}: {reason}: restore the line, or delete it, and its member runs again", path.display()
+    )]
+    Line {
+        /// The journal.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The ensemble cannot be recognised.
+    #[error("the model cannot be written, so its results could not be told from others: {0}")]
+    Identity(Diagnostics),
 }
 
 fn file_error(path: &Path) -> impl Fn(io::Error) -> StoreError {
@@ -69,7 +94,12 @@ pub struct Store {
     lines: BTreeMap<usize, u64>,
     end: u64,
     failed: usize,
+    /// Until the store is dropped.
+    _lock: FolderLock,
 }
+
+/// Who writes such a folder.
+const WRITER: &str = "anergy sweep";
 
 impl Store {
     /// Makes the folder, or goes on with what is in it.
@@ -77,20 +107,11 @@ impl Store {
     /// # Errors
     /// Files that cannot be read or written; results of another ensemble.
     pub fn open(folder: &Path, ensemble: &Ensemble) -> Result<Self, StoreError> {
-        std::fs::create_dir_all(folder).map_err(file_error(folder))?;
-        let identity = ensemble.identity();
-        let path = folder.join("ensemble.json");
-        match std::fs::read_to_string(&path) {
-            Ok(text) => {
-                if let Some(what) = difference(&identity, &text) {
-                    let folder = folder.to_owned();
-                    return Err(StoreError::Other { folder, what });
-                }
-            }
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                replace(&path, format!("{identity:#}\n").as_bytes()).map_err(file_error(&path))?;
-            }
-            Err(error) => return Err(file_error(&path)(error)),
+        let identity = ensemble.identity(WRITER, None).map_err(StoreError::Identity)?;
+        let lock = FolderLock::take(folder)?;
+        if !belongs(folder, &identity)? {
+            let path = folder.join("ensemble.json");
+            replace(&path, format!("{identity:#}\n").as_bytes()).map_err(file_error(&path))?;
         }
         let path = folder.join("journal.jsonl");
         let journal = OpenOptions::new().read(true).append(true).create(true).open(&path);
@@ -102,8 +123,9 @@ impl Store {
             lines: BTreeMap::new(),
             end: 0,
             failed: 0,
+            _lock: lock,
         };
-        store.read_journal(ensemble.len()).map_err(file_error(&path))?;
+        store.read_journal(ensemble.len(), &path)?;
         if !store.channels.is_empty() {
             let channels = folder.join("channels");
             std::fs::create_dir_all(&channels).map_err(file_error(&channels))?;
@@ -111,23 +133,29 @@ impl Store {
         Ok(store)
     }
 
-    /// Finds the lines; cuts off what is torn.
-    fn read_journal(&mut self, members: usize) -> io::Result<()> {
+    /// Finds the lines; cuts off one that was not written to its end.
+    fn read_journal(&mut self, members: usize, path: &Path) -> Result<(), StoreError> {
         let mut reader = BufReader::new(&self.journal);
         let mut text = Vec::new();
-        loop {
+        for number in 1.. {
             text.clear();
-            let length = reader.read_until(b'\n', &mut text)?;
-            let line = serde_json::from_slice::<Line>(&text).ok();
-            let Some(line) = line.filter(|line| text.ends_with(b"\n") && line.member < members)
-            else {
+            let length = reader.read_until(b'\n', &mut text).map_err(file_error(path))?;
+            if !text.ends_with(b"\n") {
                 break;
-            };
+            }
+            let wrong = |reason| StoreError::Line { path: path.to_owned(), line: number, reason };
+            let line: Line =
+                serde_json::from_slice(&text).map_err(|error| wrong(error.to_string()))?;
+            if line.member >= members {
+                return Err(wrong(format!("there is no member {}", line.member)));
+            }
+            if self.lines.insert(line.member, self.end).is_some() {
+                return Err(wrong(format!("member {} is there twice", line.member)));
+            }
             self.failed += usize::from(line.error.is_some());
-            self.lines.insert(line.member, self.end);
             self.end += length as u64;
         }
-        self.journal.set_len(self.end)
+        self.journal.set_len(self.end).map_err(file_error(path))
     }
 
     /// Members that have not finished.
@@ -254,12 +282,34 @@ impl Store {
     }
 }
 
+/// Whether a folder has results of this ensemble; `false` where it has none at all.
+///
+/// # Errors
+/// Results of another ensemble; files that cannot be read.
+pub fn is_folder_of(folder: &Path, ensemble: &Ensemble) -> Result<bool, StoreError> {
+    belongs(folder, &ensemble.identity(WRITER, None).map_err(StoreError::Identity)?)
+}
+
+fn belongs(folder: &Path, identity: &Value) -> Result<bool, StoreError> {
+    let path = folder.join("ensemble.json");
+    match std::fs::read_to_string(&path) {
+        Ok(text) => match difference(identity, &text) {
+            Some(what) => Err(StoreError::Other { folder: folder.to_owned(), what }),
+            None => Ok(true),
+        },
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(file_error(&path)(error)),
+    }
+}
+
 /// What differs between the identity of an ensemble and the text of `ensemble.json`; `None` where nothing does.
 pub fn difference(identity: &Value, text: &str) -> Option<&'static str> {
     let there: Value = serde_json::from_str(text).unwrap_or_default();
     let parts = [
+        ("writer", "writer: `anergy sweep` and `anergy.ensemble` keep different files"),
         ("program", "version"),
         ("model_sha256", "model"),
+        ("controllers", "controllers"),
         ("variations", "variations"),
         ("members", "members"),
     ];

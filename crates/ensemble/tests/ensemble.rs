@@ -7,13 +7,14 @@ use anergy_core::recorder::{Channel, Event, MemoryRecorder, Recorder, RunHeader}
 use anergy_ensemble::definition::Definition;
 use anergy_ensemble::ensemble::{Ensemble, EnsembleError};
 use anergy_ensemble::member::Outcome;
-use anergy_ensemble::store::{Store, StoreError};
+use anergy_ensemble::store::{Store, StoreError, difference};
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::overlay::Change;
 use anergy_simulation::run;
 use anergy_simulation::simulation::Simulation;
 use serde_json::{Value, json};
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -281,9 +282,156 @@ fn what_is_wrong_is_told_with_place_and_hint() {
         ("format = 1\n[ensemble]\ndesign = \"points\"\npoints = [[0.5], [0.5, 1.5]]\n[[variation]]\nparameter = \"ground.temperature_k\"\nlow = 280\nhigh = 290\n".into(), "4:10: ensemble: points[1] has 2 numbers for 1 variations"),
         (format!("format = 1\n[ensemble]\ndesign = \"list\"\n{one}[[variation]]\nparameter = \"sf1.feed_in_pump.speed\"\nvalues = [1, 2]\n"), "variation \"sf1.feed_in_pump.speed\" has 2 values, \"ground.temperature_k\" has 1"),
         (format!("format = 1\n{one}{one}"), "there is another variation of that name"),
+        (format!("format = 1\n{one}name = \"id\"\n"), "5:8: variation \"id\": the name is one of a column of the results"),
+        (format!("format = 1\n{one}name = \"time_s\"\n"), "the name is one of a column of the results"),
+        (format!("format = 1\n{one}name = \"network.heat_lost_kwh\"\n"), "5:8: variation \"network.heat_lost_kwh\": the name looks like that of an indicator"),
+        // A pattern takes a parameter that was named.
+        ("format = 1\n[[variation]]\nparameter = \"sf1-sf2.hot.length_m\"\nvalues = [100]\n[[variation]]\nname = \"all\"\nparameter = \"*.length_km\"\nvalues = [0.1]\n".into(), "7:13: variation \"all\" means \"sf1-sf2.hot.length_m\", which \"sf1-sf2.hot.length_m\" varies already"),
+        ("format = 1\n[[variation]]\nparameters = [\"ground.temperature_k\", \"ground.temperature_degc\"]\nvalues = [280]\n".into(), "means \"ground.temperature_k\" twice"),
+        // No member can be.
+        ("format = 1\n[[variation]]\nparameter = \"sf1-sf2.hot.length_m\"\nvalues = [-1, -2]\n".into(), "4:10: variation \"sf1-sf2.hot.length_m\": "),
+        ("format = 1\n[[variation]]\nparameter = \"ground.temperature_degc\"\nvalues = [[1.0, 2.0]]\n".into(), "4:10: variation \"ground.temperature_degc\": "),
+        // Too many.
+        (format!("format = 1\n[ensemble]\ndesign = \"monte_carlo\"\nmembers = 1000000000000\n{one}"), "4:11: ensemble: members = 1000000000000 is too many"),
+        (format!("format = 1\n{one}[[variation]]\nparameter = \"sf1.feed_in_pump.speed\"\nlow = 0\nhigh = 1\ncount = 4611686018427387904\n[[variation]]\nparameter = \"sf1-sf2.hot.length_m\"\nvalues = [1, 2, 3, 4, 5]\n"), "9:9: variation \"sf1.feed_in_pump.speed\": its 4611686018427387904 values make too many members"),
     ] {
         let told = refusal(&text);
         assert!(told.contains(expected), "{expected}\nis not in\n{told}\nof\n{text}");
         assert!(told.contains("hint: ") || told.contains("did you mean"), "{told}");
     }
+}
+
+/// A table of values is in the unit of its name, number by number.
+#[test]
+fn curves_are_converted_number_by_number() {
+    let curve = "speed = 0.95, curve_v_flow_m3_h = [0, 1, 2], curve_head_hpa = [400, 300, 100]";
+    let model = model(&MODEL.replace("speed = 0.95", curve));
+    let text = "format = 1\n[[variation]]\nname = \"curve\"\nparameter = \"sf1.feed_in_pump.curve_head_hpa\"\n\
+                values = [[300, 250, 50], [400, 350, 100]]\n";
+    let ensemble = Ensemble::new(model, Definition::from_toml(text).unwrap()).unwrap();
+    let set = Change::Set {
+        parameter: "sf1.feed_in_pump.curve_head_pa".into(),
+        value: json!([40000.0, 35000.0, 10000.0]),
+    };
+    assert_eq!(ensemble.changes(1), [set]);
+}
+
+/// Layers of a storage are counted.
+#[test]
+fn whole_numbers_stay_whole_and_what_gives_others_is_refused() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/two-pipe");
+    let text = std::fs::read_to_string(folder.join("model.toml")).unwrap();
+    let model = Arc::new(Model::from_toml(&text, &folder).unwrap());
+    let parameters = model.parameters();
+    let layers = parameters.iter().find(|(name, _)| name.ends_with(".layers")).unwrap().0.clone();
+    let of = |rest: &str| {
+        let text = format!("format = 1\n{rest}\n").replace("LAYERS", &layers);
+        Ensemble::new(model.clone(), Definition::from_toml(&text).unwrap())
+    };
+    let set = |n: u32| Change::Set { parameter: layers.clone(), value: json!(n) };
+    let variation = "[[variation]]\nparameter = \"LAYERS\"\n";
+    let grid = of(&format!("{variation}low = 10\nhigh = 20\ncount = 3")).unwrap();
+    assert_eq!([grid.changes(0), grid.changes(1)], [[set(10)], [set(15)]]);
+    let listed = of(&format!("{variation}values = [12.0, 14]")).unwrap();
+    assert_eq!([listed.changes(0), listed.changes(1)], [[set(12)], [set(14)]]);
+    for (rest, told) in [
+        (format!("{variation}low = 10\nhigh = 20\ncount = 4"), "whole number, 13.33"),
+        (format!("{variation}values = [12.5]"), "whole number, 12.5 is none"),
+        (format!("{variation}values = [2]\nhow = \"scale\""), "cannot be scaled"),
+        (
+            format!(
+                "[ensemble]\ndesign = \"monte_carlo\"\nmembers = 3\n{variation}low = 10\nhigh = 20"
+            ),
+            "a distribution gives others",
+        ),
+    ] {
+        let error = of(&rest).unwrap_err().to_string();
+        assert!(error.contains(told), "{told} is not in {error}");
+    }
+}
+
+#[test]
+fn seeds_that_vary_are_not_drawn() {
+    let text = "format = 1\n[ensemble]\ndesign = \"monte_carlo\"\nmembers = 2\n[run]\nuntil = \"1min\"\n\
+                [[variation]]\nparameter = \"meter.seed\"\nvalues = [4, 5]\n";
+    let definition = Definition::from_toml(text).unwrap();
+    let ensemble = Ensemble::new(model(&format!("{MODEL}{NOISY}")), definition).unwrap();
+    let value = ensemble.values(1)[0].clone();
+    assert_eq!(ensemble.changes(1), [Change::Set { parameter: "meter.seed".into(), value }]);
+}
+
+#[test]
+fn a_folder_has_one_writer() {
+    let (folder, ensemble) = (tempfile::tempdir().unwrap(), ensemble(VARIATIONS));
+    let first = Store::open(folder.path(), &ensemble).unwrap();
+    let error = Store::open(folder.path(), &ensemble).unwrap_err();
+    assert!(matches!(&error, StoreError::Busy { .. }), "{error}");
+    drop(first);
+    assert!(Store::open(folder.path(), &ensemble).is_ok());
+    // The Parquet files of Python are no journal; other controllers give other results.
+    let of_python = ensemble.identity("anergy.ensemble", None).unwrap();
+    std::fs::write(folder.path().join("ensemble.json"), of_python.to_string()).unwrap();
+    let error = Store::open(folder.path(), &ensemble).unwrap_err().to_string();
+    assert!(error.contains("other writer"), "{error}");
+    let with = ensemble.identity("anergy.ensemble", Some("mine.Pi 1f")).unwrap();
+    assert_eq!(difference(&with, &of_python.to_string()), Some("controllers"));
+    assert_eq!(difference(&with, &with.to_string()), None);
+}
+
+#[test]
+fn only_a_torn_last_line_is_cut_off() {
+    let (folder, ensemble) = (tempfile::tempdir().unwrap(), ensemble(VARIATIONS));
+    fill(&ensemble, folder.path(), 4);
+    let journal = folder.path().join("journal.jsonl");
+    let whole = std::fs::read_to_string(&journal).unwrap();
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    for (text, told) in [
+        (format!("{}{{\"member\": 3,\n{}{}", lines[0], lines[2], lines[3]), "journal.jsonl:2: "),
+        (format!("{whole}{}", lines[1]), "journal.jsonl:5: member"),
+        (format!("{whole}{{\"member\": 12, \"values\": []}}\n"), "there is no member 12"),
+    ] {
+        std::fs::write(&journal, &text).unwrap();
+        let error = Store::open(folder.path(), &ensemble).unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+        assert_eq!(std::fs::read_to_string(&journal).unwrap(), text, "nothing is lost");
+    }
+    std::fs::write(&journal, whole.trim_end()).unwrap();
+    assert_eq!(Store::open(folder.path(), &ensemble).unwrap().finished(), 3);
+}
+
+#[test]
+fn no_indicator_is_called_like_a_parameter() {
+    let text =
+        VARIATIONS.replace("members = 12", "members = 1").replace("\"sf1.station.*\"", "\"*\"");
+    let ensemble = ensemble(&text);
+    let parameters: HashSet<String> =
+        ensemble.model().parameters().into_iter().map(|(name, _)| name).collect();
+    let outcomes = all(&ensemble, 1);
+    let kpis = &outcomes[0].result.as_ref().unwrap().kpis;
+    assert!(kpis.len() > 5, "{kpis:?}");
+    assert!(kpis.keys().all(|name| !parameters.contains(name)));
+}
+
+/// The examples fit the models that they name.
+#[test]
+fn the_examples_are_ensembles() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let mut count = 0;
+    for file in std::fs::read_dir(examples.join("ensembles")).unwrap() {
+        let file = file.unwrap().path();
+        if file.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).unwrap();
+        let named = text.lines().find_map(|line| line.strip_prefix("# anergy sweep ")).unwrap();
+        let named = named.split(' ').next().unwrap();
+        let named = examples.join("..").join(named);
+        let model = std::fs::read_to_string(&named).unwrap();
+        let model = Model::from_toml(&model, named.parent().unwrap()).unwrap();
+        let definition = Definition::from_toml(&text).unwrap();
+        let ensemble = Ensemble::new(Arc::new(model), definition).unwrap();
+        assert!(ensemble.len() > 1, "{}", file.display());
+        count += 1;
+    }
+    assert!(count > 0);
 }

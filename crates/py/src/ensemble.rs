@@ -6,13 +6,15 @@ use crate::model::Model;
 use anergy_core::clock::Time;
 use anergy_ensemble::definition::{Definition, schema};
 use anergy_ensemble::ensemble::{Ensemble, EnsembleError, all_threads};
+use anergy_ensemble::lock::FolderLock;
 use anergy_ensemble::member::Outcome;
 use anergy_ensemble::members::Members;
+use anergy_ensemble::store::StoreError;
 use anergy_simulation::diagnostic::Diagnostics;
 use anergy_simulation::model_file::StepEntry;
 use anergy_simulation::overlay::Change;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 use serde_json::Value;
@@ -207,6 +209,15 @@ pub struct PyMembers {
     model: Py<Model>,
 }
 
+impl PyMembers {
+    fn recognised(&self, py: Python<'_>, controllers: Option<&str>) -> PyResult<Value> {
+        let identity = py.detach(|| self.ensemble.identity("anergy.ensemble", controllers));
+        let base = self.model.get();
+        identity
+            .map_err(|problems| errors::model_error(py, &problems, &base.model.text, base.origin()))
+    }
+}
+
 #[pymethods]
 impl PyMembers {
     #[new]
@@ -231,14 +242,21 @@ impl PyMembers {
         self.ensemble.channels().iter().map(String::as_str).collect()
     }
 
-    /// What tells the ensemble from others, JSON.
-    fn identity(&self, py: Python<'_>) -> String {
-        py.detach(|| format!("{:#}\n", self.ensemble.identity()))
+    /// What tells the ensemble from others, JSON; `controllers` tells those in Python.
+    #[pyo3(signature = (controllers=None))]
+    fn identity(&self, py: Python<'_>, controllers: Option<&str>) -> PyResult<String> {
+        Ok(format!("{:#}\n", self.recognised(py, controllers)?))
     }
 
     /// What differs from the identity of another ensemble; None where nothing does.
-    fn differs(&self, py: Python<'_>, other: &str) -> Option<&'static str> {
-        py.detach(|| anergy_ensemble::store::difference(&self.ensemble.identity(), other))
+    #[pyo3(signature = (other, controllers=None))]
+    fn differs(
+        &self,
+        py: Python<'_>,
+        other: &str,
+        controllers: Option<&str>,
+    ) -> PyResult<Option<&'static str>> {
+        Ok(anergy_ensemble::store::difference(&self.recognised(py, controllers)?, other))
     }
 
     /// The model of a member.
@@ -308,6 +326,28 @@ impl PyMembers {
             });
         });
         raised.map_or(Ok(()), Err)
+    }
+}
+
+/// Keeps other writers out of a folder until it is released.
+#[pyclass(module = "anergy._core", name = "_FolderLock")]
+pub struct PyFolderLock {
+    lock: Option<FolderLock>,
+}
+
+#[pymethods]
+impl PyFolderLock {
+    #[new]
+    fn new(folder: PathBuf) -> PyResult<Self> {
+        match FolderLock::take(&folder) {
+            Ok(lock) => Ok(Self { lock: Some(lock) }),
+            Err(busy @ StoreError::Busy { .. }) => Err(PyValueError::new_err(busy.to_string())),
+            Err(error) => Err(PyOSError::new_err(error.to_string())),
+        }
+    }
+
+    fn release(&mut self) {
+        self.lock = None;
     }
 }
 

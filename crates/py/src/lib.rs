@@ -25,7 +25,7 @@ mod _core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::ensemble::{PyMembers, Variations};
+    use crate::ensemble::{PyFolderLock, PyMembers, Variations};
     #[pymodule_export]
     use crate::errors::unknown_name;
     #[pymodule_export]

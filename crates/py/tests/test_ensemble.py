@@ -49,6 +49,31 @@ class Refuses(Slow):
         raise RuntimeError("no water today")
 
 
+class Stateful(anergy.Controller):
+    """Remembers how often it was asked since it was made: in a new one, never."""
+
+    interval_s = 60.0
+    acts_on = ("sf1.feed_in_pump.speed",)
+
+    def __init__(self):
+        self.asked = 0
+
+    def update(self, time_s, measured):
+        self.asked += 1
+        return 0.9 - 0.05 * min(self.asked, 8)
+
+
+def make_nothing():
+    raise RuntimeError("no controllers today")
+
+
+class Kills(Slow):
+    """Ends its process, as the system does when memory is short."""
+
+    def update(self, time_s, measured):
+        os._exit(3)
+
+
 def same(one: anergy.Ensemble, other: anergy.Ensemble) -> None:
     assert list(one.table) == list(other.table)
     for name in one.table:
@@ -113,6 +138,83 @@ def test_python_controllers_run_in_processes(model, threads):
         same(found, anergy.ensemble(model, VARIATIONS, pool, controllers=make_slow))
         refused = anergy.ensemble(model, VARIATIONS, pool, controllers=[Refuses()])
     assert len(refused.failed) == 24 and refused.failed[0] == "RuntimeError: no water today"
+
+
+def test_members_do_not_share_controllers(model):
+    """What a controller remembers since it was made is of its member alone, in threads as in a run."""
+    with ThreadPoolExecutor(4) as pool:
+        found = anergy.ensemble(model, VARIATIONS, pool, controllers=[Stateful()])
+    for member in (0, 11, 23):
+        result = found.model(member).simulate(until_s=300, step_s=5, record_s=60, controllers=[Stateful()])
+        flows = found.channel("sf1.station.m_flow_kg_s")[1][member]
+        np.testing.assert_array_equal(flows, result["sf1.station.m_flow_kg_s"])
+    with ThreadPoolExecutor(1) as pool:
+        same(found, anergy.ensemble(model, VARIATIONS, pool, controllers=[Stateful()]))
+
+
+def test_controllers_that_cannot_be_made_fail_their_members(model):
+    with ThreadPoolExecutor(2) as pool:
+        found = anergy.ensemble(model, VARIATIONS, pool, controllers=make_nothing)
+    assert len(found.failed) == 24 and found.failed[7] == "RuntimeError: no controllers today"
+
+
+def test_a_folder_knows_its_controllers(model, tmp_path):
+    few = VARIATIONS | {"ensemble": VARIATIONS["ensemble"] | {"members": 2}}
+    with ThreadPoolExecutor(1) as pool:
+        for _ in range(2):
+            anergy.ensemble(model, few, pool, out=tmp_path / "kept", controllers=[Slow()])
+        other = Slow()
+        other.gain = 2
+        for controllers in ([Stateful()], None, make_slow, [other]):
+            with pytest.raises(ValueError, match="other controllers"):
+                anergy.ensemble(model, few, pool, out=tmp_path / "kept", controllers=controllers)
+
+
+def test_a_folder_has_one_writer(model, tmp_path):
+    from anergy._core import _FolderLock
+
+    few = VARIATIONS | {"ensemble": VARIATIONS["ensemble"] | {"members": 2}}
+    lock = _FolderLock(tmp_path / "kept")
+    with pytest.raises(ValueError, match="is written by another run"):
+        anergy.ensemble(model, few, out=tmp_path / "kept")
+    lock.release()
+    anergy.ensemble(model, few, out=tmp_path / "kept")
+    # It is free again, also after a refusal.
+    with pytest.raises(ValueError, match="other variations"):
+        anergy.ensemble(model, VARIATIONS, out=tmp_path / "kept")
+    _FolderLock(tmp_path / "kept").release()
+
+
+def test_lost_workers_leave_what_has_finished(model, tmp_path):
+    with pytest.raises(anergy.WorkersLost, match="the workers were lost after 0 of 24 members") as lost:
+        anergy.ensemble(model, VARIATIONS, controllers=[Kills()], threads=1)
+    assert lost.value.result.size == 24 and not lost.value.result.complete
+
+
+def swept(folder, lines):
+    """The folder of an `anergy sweep` that was killed: no members.csv, a torn line."""
+    (folder / "channels").mkdir(parents=True)
+    about = {"writer": "anergy sweep", "members": 4, "variations": {"variation": [{"parameter": "a.x"}, {"name": "word"}]}}
+    (folder / "ensemble.json").write_text(json.dumps(about))
+    (folder / "journal.jsonl").write_text("".join(lines))
+    (folder / "channels/member-000002.csv").write_text("time_s,flow\n0,1.5\n60,2.5\n")
+    return folder
+
+
+def test_a_killed_sweep_is_read_from_its_journal(tmp_path):
+    lines = [
+        '{"member": 2, "values": [0.1, "b"], "kpis": {"network.heat_kwh": 0.30000000000000004}}\n',
+        '{"member": 0, "values": [3, "a"], "error": "length_m = -1"}\n',
+    ]
+    found = anergy.Ensemble.from_folder(swept(tmp_path / "one", [*lines, '{"member": 1, "val']))
+    assert len(found) == 2 and found.size == 4 and not found.complete
+    assert found["member"].tolist() == [0, 2] and found.failed == {0: "length_m = -1"}
+    assert found["a.x"].tolist() == [3.0, 0.1] and found["word"].tolist() == ["a", "b"]
+    assert found["network.heat_kwh"][1] == 0.30000000000000004 and found.kpis == ["network.heat_kwh"]
+    time_s, flows = found.channel("flow")
+    assert time_s.tolist() == [0.0, 60.0] and flows.tolist() == [[1.5, 2.5]]
+    with pytest.raises(ValueError, match=r"journal.jsonl:1: is no line"):
+        anergy.Ensemble.from_folder(swept(tmp_path / "two", ["{\n", *lines]))
 
 
 def test_failed_members_are_told(model, tmp_path):

@@ -233,7 +233,7 @@ fn part_of<'t>(tree: &'t Tree, table: &SiTable, path: &Path) -> Option<(&'t str,
 
 /// Converts a number, or all numbers of an array; leaves other values for the type check. `None` when a
 /// number is infinite in SI.
-pub(crate) fn converted(value: &Value, unit: Unit) -> Option<Value> {
+pub fn converted(value: &Value, unit: Unit) -> Option<Value> {
     match value {
         Value::Number(number) => {
             let si = unit.to_si(number.as_f64()?);

@@ -7,7 +7,7 @@ use crate::output::line;
 use crate::progress::MemberProgress;
 use anergy_ensemble::definition::Definition;
 use anergy_ensemble::ensemble::{Ensemble, EnsembleError, all_threads};
-use anergy_ensemble::store::{Store, StoreError};
+use anergy_ensemble::store::{Store, StoreError, is_folder_of};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -105,6 +105,8 @@ fn one(path: &Path, ensemble: &Ensemble, member: usize, out: &Path) -> Result<()
         let last = ensemble.len().saturating_sub(1);
         return Err(Failure::Usage(format!("--member {member}: members are 0 to {last}")));
     }
+    // Beside the results of another ensemble nobody would know whose member it is.
+    is_folder_of(out, ensemble)?;
     let names = ensemble.definition().variations.iter().map(|variation| &variation.name);
     for (name, value) in names.zip(ensemble.values(member)) {
         line!("{name} = {value}");

@@ -39,6 +39,7 @@ from anergy.errors import (
     RunError,
     SnapshotError,
     UnknownNameError,
+    WorkersLost,
 )
 from anergy.explanation import Explanation, explain
 from anergy.stability import BlockingMap, Mode, Stability
@@ -73,6 +74,7 @@ __all__ = [
     "Table",
     "UnknownNameError",
     "Variations",
+    "WorkersLost",
     "__version__",
     "ensemble",
     "examples",

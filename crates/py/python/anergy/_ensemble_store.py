@@ -3,6 +3,7 @@
 | file | content |
 |---|---|
 | `ensemble.json` | whose results these are |
+| `ensemble.lock` | locked while one writes |
 | `members.parquet` | a row per member in their order: written at the end and when stopped |
 | `parts/members-N.parquet` | rows that have finished since |
 | `channels/part-N.parquet` | chosen channels: `member`, `time_s`, a column per channel |
@@ -16,14 +17,14 @@ import csv
 import json
 import os
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from anergy._core import Variations, _Members
+from anergy._core import Variations, _FolderLock, _Members
 from anergy._export import _optional
 
 Outcome = tuple[int, list[Any], "str | None", dict[str, float], npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]
@@ -34,9 +35,17 @@ LARGEST_PART = 512
 
 
 class Kept(Protocol):
-    """Where outcomes go."""
+    """Outcomes that are there."""
 
     channels: list[str]
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]: ...
+    def channel(self, name: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+
+
+class Keeping(Kept, Protocol):
+    """Where outcomes go."""
+
     failed: int
 
     @property
@@ -45,8 +54,7 @@ class Kept(Protocol):
     def add(self, outcome: Outcome) -> None: ...
     def flush(self, every_s: float) -> None: ...
     def finish(self) -> None: ...
-    def columns(self) -> dict[str, npt.NDArray[Any]]: ...
-    def channel(self, name: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+    def release(self) -> None: ...
 
 
 class Memory:
@@ -75,6 +83,9 @@ class Memory:
     def finish(self) -> None:
         pass
 
+    def release(self) -> None:
+        pass
+
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         outcomes = [self.outcomes[member] for member in sorted(self.outcomes)]
         return _columns(outcomes, self.names, self.numeric)
@@ -86,7 +97,7 @@ class Memory:
 
 
 def _columns(outcomes: Sequence[Outcome], names: Sequence[str], numeric: Sequence[bool]) -> dict[str, npt.NDArray[Any]]:
-    columns: dict[str, npt.NDArray[Any]] = {"id": np.array([outcome[0] for outcome in outcomes], dtype=np.int64)}
+    columns: dict[str, npt.NDArray[Any]] = {"member": np.array([outcome[0] for outcome in outcomes], dtype=np.int64)}
     for i, name in enumerate(names):
         values = [outcome[1][i] for outcome in outcomes]
         columns[name] = np.array(values, dtype=float) if numeric[i] else np.array([str(v) for v in values], dtype=str)
@@ -115,8 +126,16 @@ def _stacked(
 class Folder:
     """Keeps everything in Parquet files; in memory only which members have finished."""
 
-    def __init__(self, folder: Path, variations: Variations, members: _Members) -> None:
+    def __init__(self, folder: Path, variations: Variations, members: _Members, controllers: str | None) -> None:
         self._parquet = _optional("pyarrow.parquet", "parquet")
+        self._lock = _FolderLock(folder)
+        try:
+            self._begin(folder, variations, members, controllers)
+        except BaseException:
+            self._lock.release()
+            raise
+
+    def _begin(self, folder: Path, variations: Variations, members: _Members, controllers: str | None) -> None:
         self.folder = folder
         self.names, self.numeric = variations.names, variations._numeric()
         self.channels = members.channels
@@ -125,21 +144,19 @@ class Folder:
         (folder / "parts").mkdir(parents=True, exist_ok=True)
         about = folder / "ensemble.json"
         if about.exists():
-            differs = members.differs(about.read_text(encoding="utf-8"))
+            differs = members.differs(about.read_text(encoding="utf-8"), controllers)
             if differs is not None:
                 message = f"{folder} has the results of another ensemble (other {differs}): name another folder, or delete it"
                 raise ValueError(message)
-            if (folder / "journal.jsonl").exists():
-                raise ValueError(f"{folder} is a folder of `anergy sweep`: name another one")
         else:
-            _replace(about, members.identity().encode())
+            _replace(about, members.identity(controllers).encode())
         if self.channels:
             (folder / "channels").mkdir(exist_ok=True)
-        self._open(variations)
+        self._open()
 
-    def _open(self, variations: Variations) -> None:
-        table = self._table(["id", "error"])
-        self._finished = set(table.column("id").to_pylist()) if table is not None else set()
+    def _open(self) -> None:
+        table = self._table(["member", "error"])
+        self._finished = set(table.column("member").to_pylist()) if table is not None else set()
         self.failed = sum(1 for error in table.column("error").to_pylist() if error) if table is not None else 0
         channel_parts = sorted((self.folder / "channels").glob("part-*.parquet"))
         parts = [*sorted((self.folder / "parts").glob("members-*.parquet")), *channel_parts]
@@ -157,8 +174,8 @@ class Folder:
         tables = [self._parquet.read_table(file, columns=columns) for file in files if file.exists()]
         if not tables:
             return None
-        table = pa.concat_tables(tables, promote_options="default").sort_by("id")
-        ids = table.column("id").to_numpy()
+        table = pa.concat_tables(tables, promote_options="default").sort_by("member")
+        ids = table.column("member").to_numpy()
         # Killed between the table and the parts that it took over.
         return table.filter(np.append(True, ids[1:] != ids[:-1])) if len(ids) else table
 
@@ -203,11 +220,14 @@ class Folder:
         table = self._table()
         if table is None:
             return
-        first = ["id", *self.names, "error"]
+        first = ["member", *self.names, "error"]
         names = [*first, *_ordered(set(table.column_names) - set(first))]
         self._write(table.select(names), self.folder / "members.parquet")
         for part in (self.folder / "parts").glob("members-*.parquet"):
             part.unlink()
+
+    def release(self) -> None:
+        self._lock.release()
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         table = self._table()
@@ -243,42 +263,34 @@ def _replace(path: Path, content: bytes) -> None:
     os.replace(part, path)
 
 
-class Table:
-    """The folder of `anergy sweep`."""
+class Journal:
+    """The folder of `anergy sweep`, also of one that was killed or still runs: its journal has every finished member."""
 
     def __init__(self, folder: Path, names: Sequence[str]) -> None:
-        self.folder = folder
-        with (folder / "members.csv").open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        head, self._rows = rows[0], rows[1:]
-        self._columns = {name: [row[i] for row in self._rows] for i, name in enumerate(head)}
-        files = sorted((folder / "channels").glob("member-*.csv"))
-        self._files = files
-        self.channels = _head(files[0])[1:] if files else []
-        self.failed = sum(1 for error in self._columns["error"] if error)
-
-    @property
-    def finished(self) -> int:
-        return len(self._rows)
-
-    def pending(self, size: int) -> list[int]:
-        raise NotImplementedError("`anergy sweep` goes on with it")
-
-    def add(self, outcome: Outcome) -> None:
-        raise NotImplementedError("`anergy sweep` goes on with it")
-
-    def flush(self, every_s: float) -> None:
-        pass
-
-    def finish(self) -> None:
-        pass
+        self.folder, self.names = folder, names
+        self._outcomes: dict[int, Outcome] = {}
+        with (folder / "journal.jsonl").open(encoding="utf-8") as file:
+            for number, line in enumerate(file, 1):
+                if not line.endswith("\n"):
+                    # Torn, or being written.
+                    break
+                try:
+                    told = json.loads(line)
+                    member, values = int(told["member"]), told["values"]
+                except (ValueError, KeyError, TypeError) as error:
+                    raise ValueError(f"{folder / 'journal.jsonl'}:{number}: is no line of a journal: {error}") from error
+                empty: list[npt.NDArray[np.float64]] = []
+                self._outcomes[member] = (member, values, told.get("error"), told.get("kpis", {}), np.array([]), empty)
+        good = [member for member in sorted(self._outcomes) if self._outcomes[member][2] is None]
+        files = [folder / "channels" / f"member-{member:06}.csv" for member in good]
+        self._files = [file for file in files if file.exists()]
+        self.channels = _head(self._files[0])[1:] if self._files else []
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        columns: dict[str, npt.NDArray[Any]] = {"id": np.array(self._columns["member"], dtype=np.int64)}
-        for name, values in self._columns.items():
-            if name != "member":
-                columns[name] = np.array(values, dtype=str) if name == "error" else _numbers(values)
-        return columns
+        outcomes = [self._outcomes[member] for member in sorted(self._outcomes)]
+        values = zip(*(outcome[1] for outcome in outcomes))
+        numeric = [all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in v) for v in values]
+        return _columns(outcomes, self.names, numeric or [True] * len(self.names))
 
     def channel(self, name: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         series = []
@@ -293,20 +305,13 @@ def _head(file: Path) -> list[str]:
         return next(csv.reader(opened))
 
 
-def _numbers(values: Iterable[str]) -> npt.NDArray[Any]:
-    try:
-        return np.array([float(value) if value else np.nan for value in values])
-    except ValueError:
-        return np.array(list(values), dtype=str)
-
-
 def read(folder: Path) -> tuple[Kept, list[str], int]:
     """What is in a folder, what varied, and the number of members."""
     about = json.loads((folder / "ensemble.json").read_text(encoding="utf-8"))
     entries = about["variations"]["variation"]
     names = [e.get("name") or e.get("parameter") or e["parameters"][0] for e in entries]
-    if (folder / "members.csv").exists():
-        return Table(folder, names), names, about["members"]
+    if (folder / "journal.jsonl").exists():
+        return Journal(folder, names), names, about["members"]
     kept = Folder.__new__(Folder)
     kept._parquet = _optional("pyarrow.parquet", "parquet")
     kept.folder, kept.names, kept.numeric = folder, names, [True] * len(names)

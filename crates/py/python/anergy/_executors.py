@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
+import inspect
 import os
 import pickle
+import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from typing import Any
@@ -39,7 +42,9 @@ def run(
     count = workers or _workers(executor)
     # A client of Dask makes an executor itself; the same function and arguments are no reason not to run again.
     pool: Executor = executor.get_executor(pure=False) if hasattr(executor, "get_executor") else executor
-    ensemble = pickle.dumps((model, variations, controllers))
+    # Controllers apart: each member has its own, as they were when the ensemble was started.
+    own_controllers = None if controllers is None else pickle.dumps(controllers)
+    ensemble = pickle.dumps((model, variations))
     size = max(1, min(LARGEST_PART, len(members) // (TASKS_PER_WORKER * count)))
     parts = [list(members[i : i + size]) for i in range(0, len(members), size)]
     parts.reverse()
@@ -48,9 +53,13 @@ def run(
         while parts or running:
             # So many wait that no worker is idle, and not so many that their results fill the memory.
             while parts and len(running) < 3 * count:
-                running.add(pool.submit(run_part, ensemble, parts.pop()))
+                running.add(pool.submit(run_part, ensemble, own_controllers, parts.pop()))
             done, running = wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
-            each([outcome for future in done for outcome in future.result()])
+            # What has finished is kept before the first one that broke is raised.
+            broken = [error for error in (future.exception() for future in done) if error is not None]
+            each([outcome for future in done if future.exception() is None for outcome in future.result()])
+            if broken:
+                raise broken[0]
     finally:
         for future in running:
             future.cancel()
@@ -62,21 +71,22 @@ def _workers(executor: Any) -> int:
     return int(getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
 
 
-_last: tuple[bytes, _Members, Controllers] | None = None
-"""What this worker has loaded last: it is the same for all parts of an ensemble."""
+_lock = threading.Lock()
+_last: tuple[bytes, _Members] | None = None
+"""What this worker has loaded last: it is the same for all parts of an ensemble. Threads of a pool share it."""
 
 
-def _loaded(ensemble: bytes) -> tuple[_Members, Controllers]:
+def _loaded(ensemble: bytes) -> _Members:
     global _last
-    if _last is None or _last[0] != ensemble:
-        model, variations, controllers = pickle.loads(ensemble)
-        _last = (ensemble, _Members(model, variations), controllers)
-    return _last[1], _last[2]
+    with _lock:
+        if _last is None or _last[0] != ensemble:
+            _last = (ensemble, _Members(*pickle.loads(ensemble)))
+        return _last[1]
 
 
-def run_part(ensemble: bytes, members: list[int]) -> list[Any]:
+def run_part(ensemble: bytes, controllers: bytes | None, members: list[int]) -> list[Any]:
     """Runs members one after the other; called in the workers."""
-    loaded, controllers = _loaded(ensemble)
+    loaded = _loaded(ensemble)
     outcomes: list[Any] = []
     if controllers is None:
         loaded.run(members, 1, outcomes.extend)
@@ -84,12 +94,13 @@ def run_part(ensemble: bytes, members: list[int]) -> list[Any]:
     return [_with_controllers(loaded, member, controllers) for member in members]
 
 
-def _with_controllers(loaded: _Members, member: int, controllers: Controllers) -> Any:
+def _with_controllers(loaded: _Members, member: int, controllers: bytes) -> Any:
     """A member with controllers in Python: as `_Members.run` gives it."""
-    own = controllers() if callable(controllers) else controllers
     values = loaded.values(member)
     nothing: list[Any] = []
     try:
+        given: Any = pickle.loads(controllers)
+        own = given() if callable(given) else given
         result = loaded.model(member).simulate(**loaded.options(), controllers=own)
     except AnergyError as error:
         return member, values, str(error), {}, np.array([]), nothing
@@ -101,3 +112,24 @@ def _with_controllers(loaded: _Members, member: int, controllers: Controllers) -
     # Copies: views would keep all channels of the run.
     columns = [result[name].copy() for name in loaded.channels]
     return member, values, None, kpis, result.time_s.copy(), columns
+
+
+def told(controllers: Controllers) -> str | None:
+    """Names of controllers with a hash of their state and code: other ones give other results."""
+    if controllers is None:
+        return None
+    kinds: list[Any] = [controllers] if callable(controllers) else [type(own) for own in controllers]
+    # Twice: the first time, texts that are equal but not the same are written out again.
+    state = hashlib.sha256(pickle.dumps(pickle.loads(pickle.dumps(controllers))))
+    for kind in kinds:
+        state.update(_source(kind))
+    names = [f"{kind.__module__}.{kind.__qualname__}" if hasattr(kind, "__qualname__") else repr(type(kind)) for kind in kinds]
+    return f"{', '.join(names)} {state.hexdigest()}"
+
+
+def _source(kind: Any) -> bytes:
+    try:
+        return inspect.getsource(kind).encode()
+    except (OSError, TypeError):
+        # Written at a prompt.
+        return b""

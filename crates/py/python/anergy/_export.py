@@ -33,9 +33,9 @@ def _optional(module: str, extra: str) -> Any:
 
 
 def table_to_pandas(table: Table) -> pandas.DataFrame:
-    """A DataFrame with `id` as index."""
+    """A DataFrame with the names of the rows as index."""
     pd = _optional("pandas", "pandas")
-    frame: pandas.DataFrame = pd.DataFrame(dict(table)).set_index("id")
+    frame: pandas.DataFrame = pd.DataFrame(dict(table)).set_index(table._key)
     return frame
 
 

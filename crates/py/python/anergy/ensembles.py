@@ -19,7 +19,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import BrokenExecutor, Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,9 +28,9 @@ import numpy.typing as npt
 
 from anergy import _ensemble_plots, _executors
 from anergy._core import Model, Variations, _Members, _unknown_name
-from anergy._ensemble_store import Folder, Kept, Memory, read
+from anergy._ensemble_store import Folder, Keeping, Kept, Memory, read
 from anergy.controller import Controller
-from anergy.errors import Interrupted
+from anergy.errors import Interrupted, WorkersLost
 from anergy.steady import Table
 
 if TYPE_CHECKING:
@@ -40,6 +40,12 @@ if TYPE_CHECKING:
 __all__ = ["Ensemble", "ensemble"]
 
 
+class _OfMembers(Table):
+    """A row per member."""
+
+    _key = "member"
+
+
 class Ensemble:
     """What became of the members of an ensemble: a mapping of names to columns, one value per finished member.
 
@@ -47,14 +53,14 @@ class Ensemble:
     """
 
     table: Table
-    """`id` (number of the member), what varied, `error`, and the indicators; members that failed have nan."""
+    """`member` (its number), what varied, `error`, and the indicators; members that failed have nan."""
     names: list[str]
     """What varied."""
     size: int
     """Number of members, also of those that have not run."""
 
     def __init__(self, kept: Kept, names: Sequence[str], size: int, members: _Members | None) -> None:
-        self.table = Table(kept.columns())
+        self.table = _OfMembers(kept.columns())
         self.names = list(names)
         self.size = size
         self._kept = kept
@@ -82,19 +88,19 @@ class Ensemble:
     @property
     def kpis(self) -> list[str]:
         """Names of the indicators."""
-        others = {"id", "error", *self.names}
+        others = {"member", "error", *self.names}
         return [name for name in self.table if name not in others]
 
     @property
     def failed(self) -> dict[int, str]:
         """Members that failed, and why."""
-        errors = zip(self.table["id"], self.table["error"])
+        errors = zip(self.table["member"], self.table["error"])
         return {int(member): str(error) for member, error in errors if error}
 
     @property
     def complete(self) -> bool:
         """Whether all members have finished."""
-        return len(self.table["id"]) == self.size
+        return len(self.table["member"]) == self.size
 
     @property
     def channels(self) -> list[str]:
@@ -115,7 +121,7 @@ class Ensemble:
 
     def __len__(self) -> int:
         """Number of members that have finished."""
-        return len(self.table["id"])
+        return len(self.table["member"])
 
     def model(self, member: int) -> Model:
         """The model of a member: to simulate it again with everything, or to change it further.
@@ -261,18 +267,20 @@ def ensemble(
         When the model or the variations are wrong.
     Interrupted
         After Ctrl-C, a KeyboardInterrupt; `.result` is the ensemble until then.
+    WorkersLost
+        When processes of an executor were killed, for example for lack of memory; `.result` is the ensemble until then.
     ValueError
-        When `out` has the results of another ensemble.
+        When `out` has the results of another ensemble, or another run writes into it.
     ImportError
         Without pyarrow for `out`: `pip install anergy[parquet]`.
     """
     chosen = _variations(variations)
     members = _Members(model, chosen)
-    kept: Kept
+    kept: Keeping
     if out is None:
         kept = Memory(chosen, members.channels)
     else:
-        kept = Folder(Path(out), chosen, members)
+        kept = Folder(Path(out), chosen, members, _executors.told(controllers))
     pending = kept.pending(len(chosen))
     shown = _Progress(len(chosen) - len(pending), len(chosen), progress)
 
@@ -282,22 +290,28 @@ def ensemble(
         kept.flush(every_s=2.0)
         shown.update(kept.finished, kept.failed)
 
-    stopped: KeyboardInterrupt | None = None
+    stopped: KeyboardInterrupt | BrokenExecutor | None = None
     try:
-        if executor is None and controllers is None:
-            members.run(pending, threads or 0, each)
-        else:
-            _executors.run(model, chosen, pending, executor, threads, controllers, each)
-    except KeyboardInterrupt as interrupt:
-        stopped = interrupt
+        try:
+            if executor is None and controllers is None:
+                members.run(pending, threads or 0, each)
+            else:
+                _executors.run(model, chosen, pending, executor, threads, controllers, each)
+        except (KeyboardInterrupt, BrokenExecutor) as why:
+            stopped = why
+        finally:
+            kept.flush(every_s=0.0)
+            shown.finish()
+        kept.finish()
     finally:
-        kept.flush(every_s=0.0)
-        shown.finish()
-    kept.finish()
+        kept.release()
     found = Ensemble(kept, chosen.names, len(chosen), members)
     unmatched = members.unmatched(found.kpis) if len(found) > len(found.failed) else []
     for pattern in unmatched:
         warnings.warn(f"keep: no indicator matches {pattern!r}", stacklevel=2)
+    if isinstance(stopped, BrokenExecutor):
+        message = f"the workers were lost after {len(found)} of {found.size} members, `.result` has them: {stopped}"
+        raise WorkersLost(message, found) from stopped
     if stopped is not None:
         message = f"the ensemble was interrupted after {len(found)} of {found.size} members; `.result` has them"
         raise Interrupted(message, found) from stopped

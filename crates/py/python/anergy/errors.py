@@ -126,6 +126,19 @@ class RecordingError(AnergyError):
     """A file that is not a recording of this program."""
 
 
+class WorkersLost(AnergyError):
+    """Processes that ran members of `anergy.ensemble` are gone; `result` has what was there until then."""
+
+    result: Ensemble
+
+    def __init__(self, message: str, result: Ensemble) -> None:
+        super().__init__(message, result)
+        self.result = result
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C during `Model.simulate` or `anergy.ensemble`; `result` has what was there until then.
 

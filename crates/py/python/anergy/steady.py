@@ -33,6 +33,8 @@ class Table(dict[str, npt.NDArray[Any]]):
     ['sf1.feed_in_pump', 'sf2.feed_in_pump']
     """
 
+    _key = "id"
+
     def __init__(self, columns: Mapping[str, npt.ArrayLike]) -> None:
         arrays = {name: np.asarray(column) for name, column in columns.items()}
         if len({array.shape for array in arrays.values()}) > 1:
@@ -42,14 +44,14 @@ class Table(dict[str, npt.NDArray[Any]]):
     @property
     def ids(self) -> list[str]:
         """Names of the rows."""
-        return [str(name) for name in self["id"]]
+        return [str(name) for name in self[self._key]]
 
     def row(self, id: str) -> dict[str, Any]:
         """One row as dict of str and float.
 
         Raises UnknownNameError, a KeyError, for a row that does not exist.
         """
-        found = np.flatnonzero(self["id"] == id)
+        found = np.flatnonzero(self[self._key] == id)
         if found.size == 0:
             raise _unknown_name("row", id, self.ids)
         return {name: column[found[0]].item() for name, column in self.items()}
