@@ -91,6 +91,35 @@ fn two_flows_mix_to_their_mean_and_hold_it() {
 }
 
 #[test]
+fn where_pipes_meet_the_water_cools_with_them() {
+    // 50 m of DN20 behind the joint, R = 3.78 K m/W: R C' = 3.78 * 1000 * 4180 * pi/4 * 0.022^2 = 6006 s.
+    let pipe = |id: &str, from: &str, to: &str| {
+        format!(
+            "[[edge]]\nid = \"{id}\"\nkind = \"pipe\"\nfrom = \"{from}\"\nto = \"{to}\"\nlength_m = 50\n\
+             inner_diameter_mm = 22\ninsulation_resistance_k_m_w = 3.78\n"
+        )
+    };
+    let text = format!(
+        "format = 1\n[ground]\ntemperature_degc = 10.0\n[run]\ninitial_degc = 20.0\n[[node]]\nid = \"joint\"\n\
+         [[node]]\nid = \"end\"\nkind = \"pressure_boundary\"\npressure_bar = 1.0\n{}{}{}\
+         [[schedule]]\nsignal = \"hot.m_flow_kg_s\"\nunit = \"kg/min\"\npoints = [[0, 4], [3600, 0]]\n",
+        source("hot", 4.0, 60.0),
+        pipe("before", "hot", "joint"),
+        pipe("behind", "joint", "end"),
+    );
+    let mut simulation = simulation(&text);
+    advance(&mut simulation, 3600.0, 10.0);
+    let stopped = degc(&simulation, "joint.t_k");
+    let cooled = |hours: f64| 10.0 + (stopped - 10.0) * (-hours * 3600.0 / 6006.0).exp();
+    for hours in [0.5, 1.0, 4.0] {
+        advance(&mut simulation, 3600.0 + hours * 3600.0, 10.0);
+        // Behind the ends by 60 s of 6006 s of their cooling.
+        let behind = 60.0 / 6006.0 * (cooled(hours) - 10.0);
+        near("joint", degc(&simulation, "joint.t_k"), cooled(hours) + behind, 0.05);
+    }
+}
+
+#[test]
 fn a_volume_loses_heat_with_and_without_flow() {
     // 20 l, UA 50 W/K, 8 kg/min: w = 0.13333, u = 50/4180 = 0.0119617 kg/s;
     // T = (0.13333 * 37.5 + 0.0119617 * 10)/0.145295 = 35.236 degC in the end.

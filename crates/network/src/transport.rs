@@ -7,7 +7,8 @@
 //!
 //! **Equation** node with mass M: `M dT/dt = sum m_in (T_in - T)`, solved exactly over the step:
 //! with `a = sum m_in dt/M` the mean outflow temperature is `g T_old + (1-g) T_mix`,
-//! `g = (1 - e^-a)/a`. A loss `UA (T - T_ambient)` is one more inflow, `UA/cp` at the ambient. Standing nodes without volume relax to the ambient in [`NODE_RELAXATION_S`].
+//! `g = (1 - e^-a)/a`. A loss `UA (T - T_ambient)` is one more inflow, `UA/cp` at the ambient. Standing nodes without volume take the
+//! mean of the ends of their pipes ([`JOINT_RELAXATION_S`]); without pipes that of the ambient ([`NODE_RELAXATION_S`]).
 //!
 //! **Sources** specification 9 and 10; `vanderheijde2017`.
 
@@ -31,7 +32,9 @@ use crate::state::NetworkState;
 use anergy_core::error::FactorError;
 use anergy_core::numerics::sparse::SparseLu;
 
-/// Time constant with which the water of a node without flow takes the temperature around it, s.
+/// Time constant with which the water of a node without flow takes the temperature of the ends of its pipes, s.
+pub const JOINT_RELAXATION_S: f64 = 60.0;
+/// Time constant with which it takes the temperature around it where there are no pipes, s.
 pub const NODE_RELAXATION_S: f64 = 3600.0;
 const NONE: u32 = u32::MAX;
 

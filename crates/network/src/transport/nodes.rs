@@ -1,9 +1,10 @@
 //! Nodes during a step: mixing in flow direction, and loops that have to be solved together.
 
-use super::{NODE_RELAXATION_S, Relation, Transport, volume_shares};
+use super::{JOINT_RELAXATION_S, NODE_RELAXATION_S, Relation, Transport, volume_shares};
 use crate::graph::{Network, NodeKind};
 use crate::state::{LEAST_WATER_KG, NetworkState};
 use anergy_core::error::FactorError;
+use anergy_core::port::Port;
 
 /// Share of the ambient temperature at a node in the steady state, at least: more than rounding.
 const LEAST_RELAXATION: f64 = 1e-12;
@@ -38,20 +39,39 @@ impl Transport {
         }
     }
 
-    /// Water of nodes without volume and without flow slowly takes the temperature around it.
+    /// Water of nodes without volume and without flow mixes with what stands at the ends of the pipes there, or
+    /// slowly takes the temperature around it where there are none.
     pub(super) fn relax_nodes(&mut self, network: &Network, state: &mut NetworkState, dt_s: f64) {
-        let share = -(-dt_s / NODE_RELAXATION_S).exp_m1();
+        let alone = -(-dt_s / NODE_RELAXATION_S).exp_m1();
+        let between_pipes = -(-dt_s / JOINT_RELAXATION_S).exp_m1();
         let medium = &network.medium;
         let mut lost = 0.0;
         for (i, node) in network.nodes.iter().enumerate() {
             let water_kg = node.water_kg(medium.density_kg_m3);
             if node.volume_m3 == 0.0 && self.inflow_kg_s[i] * dt_s < water_kg {
-                let drop = (state.t_node_k[i] - state.ambient_k) * share;
+                let (target_k, share) = match self.ends_of_pipes_k(network, state, i) {
+                    Some(t_k) => (t_k, between_pipes),
+                    None => (state.ambient_k, alone),
+                };
+                let drop = (state.t_node_k[i] - target_k) * share;
                 state.t_node_k[i] -= drop;
                 lost += water_kg * medium.heat_capacity_j_kg_k * drop;
             }
         }
         state.q_loss_nodes_w = lost / dt_s;
+    }
+
+    /// Mean temperature of what stands at a node in the ends of its pipes.
+    fn ends_of_pipes_k(&self, network: &Network, state: &NetworkState, node: usize) -> Option<f64> {
+        let (mut sum_k, mut ends) = (0.0, 0.0);
+        for &i in &self.incident[self.first[node] as usize..self.first[node + 1] as usize] {
+            let edge = i as usize;
+            let port = if network.edges[edge].from.index() == node { Port::A } else { Port::B };
+            if let Some(t_k) = state.pipe_end_k(network, edge, port) {
+                (sum_k, ends) = (sum_k + t_k, ends + 1.0);
+            }
+        }
+        (ends > 0.0).then(|| sum_k / ends)
     }
 
     /// Heat that node volumes lose to the ambient, W.
