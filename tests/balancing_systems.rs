@@ -124,12 +124,12 @@ fn system_b_costs_pumping_and_temperature() {
     println!("A {a:?}\nB {b:?}");
     // Nothing is lost: without a pump by construction, with it because water is not compressed.
     assert!(a.imbalance_kg_s < 1e-6 && b.imbalance_kg_s < 1e-6);
-    assert!(a.balancing_pump_kwh == 0.0 && b.balancing_pump_kwh > 0.0);
+    assert!(b.balancing_pump_kwh > 0.0 && b.balancing_pump_kwh < b.pumps_kwh);
     assert!(b.pumps_kwh > a.pumps_kwh && b.electric_kwh > a.electric_kwh);
     // Both turn with the houses, in B the pump with them.
     assert!(a.switches >= 2 && b.switches >= 2);
     // Behind the exchanger the lines are further from the storage.
     assert!(b.excursion_k > 1.5 * a.excursion_k);
-    // The pump keeps the lines nearer to each other than the bare exchanger would: 0.25 kg/s of Kv 4 are 5 hPa.
+    // The pump keeps the lines nearer to each other than the bare exchanger would: 0.25 kg/s of Kv 4 are 51 hPa.
     assert!(b.difference_pa < 250.0);
 }

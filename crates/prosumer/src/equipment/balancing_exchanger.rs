@@ -38,7 +38,7 @@ impl Default for BalancingExchangerParams {
     }
 }
 
-/// An exchanger of a balancing unit ready to run. State: what came from the storage, K; heat into the storage so far, J.
+/// An exchanger of a balancing unit ready to run. State: heat into the storage so far, J.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BalancingExchanger {
     ua_w_k: f64,
@@ -47,8 +47,7 @@ pub struct BalancingExchanger {
     medium: Medium,
 }
 
-const STORAGE_K: usize = 0;
-const HEAT_J: usize = 1;
+const HEAT_J: usize = 0;
 
 const GRID: usize = 0;
 const STORAGE: usize = 1;
@@ -91,20 +90,19 @@ impl ThermalUnit for BalancingExchanger {
         vec![UnitOutput::new("q_flow_w", "W"), UnitOutput::new("heat_j", "J")]
     }
 
-    fn initial_state(&self, initial_k: f64) -> Vec<f64> {
-        vec![initial_k, 0.0]
+    fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
+        vec![0.0]
     }
 
     fn request(
         &self,
         _signals: &Signals<'_>,
         got: &[PortFlow],
-        state: &mut [f64],
+        _state: &mut [f64],
         wanted: &mut [PortRequest],
     ) {
         wanted.fill(PortRequest::default());
         let [grid, storage] = got else { return };
-        state[STORAGE_K] = storage.t_in_k;
         let m_kg_s = (self.flow_ratio * grid.m_flow_kg_s.abs()).min(self.storage_max_kg_s);
         let w_k = direct_exchange::conductance_w_k(
             self.ua_w_k,
@@ -135,7 +133,6 @@ impl ThermalUnit for BalancingExchanger {
         out: &mut [f64],
     ) -> Exchange {
         let (grid_w, storage_w) = (self.heat_w(&ports[GRID]), self.heat_w(&ports[STORAGE]));
-        state[STORAGE_K] = ports[STORAGE].t_in_k;
         state[HEAT_J] += dt_s * storage_w;
         out.copy_from_slice(&[storage_w, state[HEAT_J]]);
         Exchange { electric_w: 0.0, external_w: grid_w + storage_w }

@@ -44,12 +44,12 @@ pub struct BalancingUnitEntry {
     /// Whether a pump keeps the lines at the same pressure.
     #[serde(default)]
     pub hydraulics: BalancingHydraulics,
-    /// Proportional gain of that pump: speed per Pa.
-    #[serde(default = "default_gain")]
-    pub gain: f64,
-    /// Integral time of that pump, s.
-    #[serde(default = "default_integral_time")]
-    pub integral_time_s: f64,
+    /// Proportional gain of that pump: speed per Pa. Absent: 2e-5.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
+    /// Integral time of that pump, s. Absent: 8.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integral_time_s: Option<f64>,
     /// That pump: fields of a pump.
     #[serde(default, skip_serializing_if = "is_null")]
     pub pump: Value,
@@ -66,30 +66,37 @@ pub enum BalancingHydraulics {
     Pumped,
 }
 
-fn default_gain() -> f64 {
-    2e-5
-}
-
-fn default_integral_time() -> f64 {
-    8.0
-}
+/// Proportional gain of the pump, speed per Pa.
+const GAIN: f64 = 2e-5;
+/// Integral time of the pump, s.
+const INTEGRAL_TIME_S: f64 = 8.0;
 
 impl BalancingUnitEntry {
     /// What cannot be, with the field and a hint; `step_s` is the longest step of the run.
     pub(super) fn problems(&self, step_s: f64) -> Vec<(&'static str, String, &'static str)> {
         let mut problems = Vec::new();
+        let pumped = self.hydraulics == BalancingHydraulics::Pumped;
         for (field, value) in [("gain", self.gain), ("integral_time_s", self.integral_time_s)] {
-            if !(value.is_finite() && value > 0.0) {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
                 let message = format!("{field} = {value} must be positive");
                 problems.push((field, message, "2e-5 per Pa and 8 s suit most pumps"));
             }
         }
-        let pumped = self.hydraulics == BalancingHydraulics::Pumped;
-        if !pumped && !self.pump.is_null() {
-            let message = "a passive balancing unit has no pump".to_owned();
-            problems.push(("pump", message, "hydraulics = \"pumped\" has it"));
+        for (field, given) in [
+            ("pump", !self.pump.is_null()),
+            ("gain", self.gain.is_some()),
+            ("integral_time_s", self.integral_time_s.is_some()),
+        ] {
+            if given && !pumped {
+                let message = format!("a passive balancing unit has no pump, so no {field}");
+                problems.push((field, message, "hydraulics = \"pumped\" has it"));
+            }
         }
-        let longest_s = LONGEST_STEP * self.integral_time_s;
+        if self.pump.get("reversible") == Some(&json!(false)) {
+            let message = "its pump turns both ways".to_owned();
+            problems.push(("pump", message, "leave `reversible` out"));
+        }
+        let longest_s = LONGEST_STEP * self.integral_time_s.unwrap_or(INTEGRAL_TIME_S);
         if pumped && step_s > longest_s {
             problems.push((
                 "hydraulics",
@@ -143,8 +150,8 @@ impl BalancingUnitEntry {
                 ("measures", json!(format!("{difference}.value"))),
                 ("acts_on", json!(names.inner("pump.speed"))),
                 ("set_point", json!(0.0)),
-                ("gain", json!(self.gain)),
-                ("integral_time_s", json!(self.integral_time_s)),
+                ("gain", json!(self.gain.unwrap_or(GAIN))),
+                ("integral_time_s", json!(self.integral_time_s.unwrap_or(INTEGRAL_TIME_S))),
             ]));
         }
         let interface = InterfaceEntry {
