@@ -239,7 +239,7 @@ impl Parser<'_> {
         loop {
             match self.words.next() {
                 Some(Token::Name(name)) => {
-                    channels.push((name, if negative { -sign } else { sign }))
+                    channels.push((name, if negative { -sign } else { sign }));
                 }
                 // -5 degC is 268.15 K, not -278.15 K.
                 Some(Token::Number(mut constant)) if negative => {
