@@ -161,21 +161,6 @@ fn ring(file: &str, step_s: f64) -> Simulation {
     advance(&mut simulation, 86_400.0, step_s);
     let balances = Balances::of(&simulation);
     assert!(balances.units_error() < 1e-9 && balances.heat_error() < 1e-6, "{file}: {balances:?}");
-    for house in HOUSES {
-        let of = |name: &str| get(&simulation, &format!("{house}.{name}"));
-        println!(
-            "{file} {house}: station {:.1} kWh, discomfort {:?}, feed-in {}, extract {}",
-            of("station.heat_j") / 3.6e6,
-            discomfort(&simulation, house),
-            of("feed_in.on"),
-            of("extract.on"),
-        );
-    }
-    let mut kinds = std::collections::BTreeMap::new();
-    for event in simulation.take_events() {
-        *kinds.entry((event.kind, event.component)).or_insert(0) += 1;
-    }
-    println!("{kinds:?}");
     simulation
 }
 

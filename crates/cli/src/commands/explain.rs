@@ -144,7 +144,7 @@ pub fn find_in(model: Model, case: &Case<'_>, out: &Path) -> Result<(), Failure>
         write(&explained, &added(case.text, &found.effects, &found.because))?;
         line!("\nthe model with what was missing: {}", explained.display());
     }
-    if found.effects.iter().any(|effect| effect.of_sensor()) {
+    if found.effects.iter().any(anergy_discrepancy::explain::Finding::of_sensor) {
         let explained = out.join("sensors.explained.toml");
         write(&explained, &added_to_sensors(case.sensors, &found.effects, &found.because))?;
         line!("\nthe sensor file with what was wrong: {}", explained.display());

@@ -32,17 +32,18 @@ pub struct Flux {
     pub clues: Vec<(&'static str, f64)>,
 }
 
-/// Of points (run, time in s, measured less simulated in K, sigma in K, flow that leaves in kg/s, temperature in K).
-pub fn missing(points: &[(usize, f64, f64, f64, f64, f64)]) -> Option<Flux> {
+/// Run, time in s, measured less simulated in K, sigma in K, flow that leaves in kg/s, temperature in K.
+pub type Point = (usize, f64, f64, f64, f64, f64);
+
+/// The flux that is missing at points.
+pub fn missing(points: &[Point]) -> Option<Flux> {
     let every = points.len().div_ceil(POINTS).max(1);
     let bins: Vec<[f64; 5]> = points
         .chunks(every)
         .filter(|chunk| chunk[0].0 == chunk[chunk.len() - 1].0)
         .map(|chunk| {
             let n = chunk.len() as f64;
-            let mean = |of: &dyn Fn(&(usize, f64, f64, f64, f64, f64)) -> f64| {
-                chunk.iter().map(of).sum::<f64>() / n
-            };
+            let mean = |of: &dyn Fn(&Point) -> f64| chunk.iter().map(of).sum::<f64>() / n;
             [
                 mean(&|p| p.1),
                 mean(&|p| p.2),

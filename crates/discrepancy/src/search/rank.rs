@@ -33,7 +33,7 @@ impl Search<'_> {
     }
 
     /// Findings of what was tried, best first; what does badly on samples that were not fitted is refuted and comes last.
-    pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>) -> Vec<Finding> {
+    pub(super) fn ranked(&self, null: &Fit, tried: &mut [Tried]) -> Vec<Finding> {
         let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
         let null_z = self.z(&null.readings);
         let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
