@@ -1,7 +1,7 @@
 //! Whether residuals are more than chance, although each resembles the one before.
 //!
 //! **Equation** intervals of a mean by the stationary bootstrap: blocks of geometrically distributed length, with the mean
-//! length of Politis and White, [`DRAWS`] series drawn. Many sensors and regimes are tested at once: Holm's correction.
+//! length of Politis and White, `DRAWS` series drawn. Many sensors and regimes are tested at once: Holm's correction.
 //! A sensor *differs* where the root mean square of `r/sigma` exceeds 1.3 with p < 0.01, *agrees* where the interval of its mean
 //! residual lies within the standard deviation of its offset, and otherwise *cannot be told*; the smallest mean deviation that
 //! would be seen is `(1.96 + 1.64)` standard errors (5 % and 95 %).

@@ -2,7 +2,7 @@
 //!
 //! **Equation** `sigma^2 = noise^2 + lsb^2/12 + (jitter dy/dt)^2 + sigma_num^2 + sigma_in^2 + sigma_0^2`. `sigma_num` is the
 //! difference to half the step. `sigma_in` is what noise, resolution and jitter of the measured inputs, and what they did in
-//! their gaps, make of the reading: the mean square over [`DRAWS`] simulations with inputs drawn anew (the Monte Carlo method
+//! their gaps, make of the reading: the mean square over `DRAWS` simulations with inputs drawn anew (the Monte Carlo method
 //! of GUM supplement 1; between two readings nearly as far from the straight line as those beside it are from theirs), smoothed over neighbouring samples. `sigma_0` is what the temperature of the water at
 //! the start, by as much as the first readings differ, makes of it.
 //!

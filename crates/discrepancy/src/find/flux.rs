@@ -5,7 +5,7 @@
 //! Against flow, temperature and its rate, the largest correlation is the clue.
 //!
 //! **Assumptions** the heat enters at the outlet: what enters upstream shows later and rounded. Averages of at most
-//! [`POINTS`] intervals; runs one after the other.
+//! `POINTS` intervals; runs one after the other.
 //!
 //! **Sources** Tikhonov and Arsenin 1977 (key `tikhonov1977`).
 
