@@ -2,7 +2,7 @@
 //! connection.
 //!
 //! **Equation** mass at every point, `sum m = 0`; pressure along every branch that no pump holds, `dp = R m |m|`
-//! ([`flows`]); heat at every point, `T sum m_in = sum m_in T_in`, with `T_in = c + f T_up` of what the units of a branch do to the
+//! (`flows`); heat at every point, `T sum m_in = sum m_in T_in`, with `T_in = c + f T_up` of what the units of a branch do to the
 //! water of the point upstream. Points are at most eight: one linear system.
 //!
 //! **Assumptions** thermal only as the circuits are: a pump that runs delivers what is asked for, so only the

@@ -10,7 +10,7 @@
 //! stops where its smallest load overshoots by `BAND_K`, and starts again where it no longer does. Return and
 //! supply above their limits stop the unit; it may start again when both are below by the restart difference.
 //!
-//! **Assumptions** no water content, unless an engine is given one ([`engine`]). Where the water takes less heat than planned (less flow, a supply that would be too hot),
+//! **Assumptions** no water content, unless an engine is given one (`combustion/engine.rs`). Where the water takes less heat than planned (less flow, a supply that would be too hot),
 //! fuel and electricity shrink in proportion. **Validity** that of each map, whose arguments are clamped. **Numerics** map and limits take the
 //! return temperature of the step before; what the water got is booked.
 //!
