@@ -814,10 +814,9 @@ class _StationType:
         hydraulics
             Whether a pump keeps the lines at the same pressure. One of passive, pumped. Default: passive.
         gain
-            Proportional gain of that pump: speed per Pa. Default: 2e-05.
+            Proportional gain of that pump: speed per Pa. Absent: 2e-5.
         integral_time_s
-            Integral time of that pump, s. Default: 8.0. Also integral_time_min, integral_time_h,
-            integral_time_d.
+            Integral time of that pump, s. Absent: 8. Also integral_time_min, integral_time_h, integral_time_d.
         pump
             A pump as written in a model file: `head_max_pa` and `free_flow_m3_s`, or the two columns
             `curve_v_flow_m3_s` and `curve_head_pa`, or `curve_polynomial`.
@@ -1255,10 +1254,9 @@ class _Station:
         hydraulics
             Whether a pump keeps the lines at the same pressure. One of passive, pumped. Default: passive.
         gain
-            Proportional gain of that pump: speed per Pa. Default: 2e-05.
+            Proportional gain of that pump: speed per Pa. Absent: 2e-5.
         integral_time_s
-            Integral time of that pump, s. Default: 8.0. Also integral_time_min, integral_time_h,
-            integral_time_d.
+            Integral time of that pump, s. Absent: 8. Also integral_time_min, integral_time_h, integral_time_d.
         pump
             A pump as written in a model file: `head_max_pa` and `free_flow_m3_s`, or the two columns
             `curve_v_flow_m3_s` and `curve_head_pa`, or `curve_polynomial`.
@@ -1403,10 +1401,9 @@ class _Station:
             How the flow is held. Absent: `pi` in steps up to a quarter of the integral time, else
             `quasi_steady`.
         gain
-            Proportional gain of that pump: speed per Pa. Default: 2e-05.
+            Proportional gain of that pump: speed per Pa. Absent: 2e-5.
         integral_time_s
-            Integral time of that pump, s. Default: 8.0. Also integral_time_min, integral_time_h,
-            integral_time_d.
+            Integral time of that pump, s. Absent: 8. Also integral_time_min, integral_time_h, integral_time_d.
         dead_time_s
             Pause of the PI control when the direction changes, s. Default: 5.0. Also dead_time_min,
             dead_time_h, dead_time_d.
