@@ -132,9 +132,19 @@ def test_steps_that_fail_end_the_episode(monkeypatch):
     assert terminated and reward == anergy.gym.FAILED and info["error"] == "no water"
 
 
+class Own(anergy.gym.Environment):
+    """The least that an environment says."""
+
+    def reward(self, before):
+        return 0.0
+
+    def baseline(self):
+        return lambda observation: observation
+
+
 def test_intervals_are_whole_steps():
     with pytest.raises(ValueError, match="no multiple of the step"):
-        anergy.gym.Environment(anergy.examples.load("three-houses"), {}, {}, 0, 1.5, 10.0, 1.0)
+        Own(anergy.examples.load("three-houses"), {}, {}, 0, 1.5, 10.0, 1.0)
 
 
 class Watched:
@@ -173,3 +183,12 @@ def test_overhead_of_a_step_is_small(env):
     # Of several attempts the best: other work on the machine only adds.
     best_us = min(overhead_us(env, 60) for _ in range(20))
     assert best_us < LIMITS_US[type(env).__name__]
+
+
+def test_an_environment_without_reward_is_refused_where_it_is_made():
+    class Rewardless(anergy.gym.Environment):
+        def baseline(self):
+            return lambda observation: observation
+
+    with pytest.raises(TypeError, match="abstract method '?reward'?"):
+        Rewardless(anergy.examples.load("three-houses"), {}, {}, 0, 10.0, 60.0)

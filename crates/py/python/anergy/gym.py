@@ -14,6 +14,7 @@ Each has observations and actions between -1 and 1, is reproducible by its seed,
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from importlib import resources
 from typing import Any, Protocol, TypeAlias
@@ -47,7 +48,7 @@ class Policy(Protocol):
         """The action."""
 
 
-class Environment(gymnasium.Env[Array, Array]):
+class Environment(gymnasium.Env[Array, Array], ABC):
     """A model whose signals are driven at an interval: the base of the environments here, and of your own.
 
     An environment of your own says how an episode begins (`begin`), what disturbs it (`disturb`), and what a step is
@@ -113,13 +114,13 @@ class Environment(gymnasium.Env[Array, Array]):
         """What is observed beside the channels, about between -1 and 1."""
         return []
 
+    @abstractmethod
     def reward(self, before: npt.NDArray[np.float64]) -> float:
         """What the interval is worth that has passed; `seen` and `command` are known, and the command before."""
-        raise NotImplementedError
 
+    @abstractmethod
     def baseline(self) -> Policy:
         """A rule for the same task, to be beaten; new for each episode."""
-        raise NotImplementedError
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         """Begins an episode."""
@@ -204,14 +205,15 @@ def score(
     return scores
 
 
-class _Rule:
+class _Rule(ABC):
     """A policy that remembers something within an episode."""
 
     def start(self) -> None:
         """An episode begins."""
 
+    @abstractmethod
     def __call__(self, observation: Array) -> Array:
-        raise NotImplementedError
+        """The action."""
 
 
 def _text(name: str) -> Model:
