@@ -67,7 +67,7 @@ validate: ## Slow cases, peers, large random sets
 	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 RSE_TESTS=all WEIGHTED_PI=all HUNTING=500 AMBIENT_DAY=1 LABORATORY=all EXPLAIN=all TABLE_DATE=$$(date +%F) \
 		cargo test --release -p anergy-tests \
 		--test every_element --test random_networks --test robustness --test destest \
-		--test openmodelica_heat --test ait_pongau --test ulg_pipe --test building --test rse_facility --test weighted_pi --test hunting --test hunting_random --test storage_charging --test ambient_day --test laboratory_houses --test explain_liege -- --nocapture
+		--test openmodelica_heat --test ait_pongau --test ulg_pipe --test pipe_steps --test building --test rse_facility --test weighted_pi --test hunting --test hunting_random --test storage_charging --test ambient_day --test laboratory_houses --test explain_liege -- --nocapture
 	$(MAKE) bench-ensemble
 
 .venv-learn/.installed:

@@ -78,6 +78,8 @@ const FRAGMENTS: &[&str] = &[
      circulation_pump = { head_max_bar = 1, free_flow_l_min = 60 }\n",
     "[[three_way_valve]]\nid = \"mixer\"\na = \"sf1.hot\"\nb = \"sf1.cold\"\nab = \"sf2.hot\"\n\
      kvs_m3_h = 1.0\nopening = 0.5\n",
+    "[[four_way_mixer]]\nid = \"four\"\nsource_supply = \"sf1.hot\"\nsource_return = \"sf1.cold\"\n\
+     load_supply = \"sf2.hot\"\nload_return = \"sf2.cold\"\nkvs_m3_h = 1.0\nopening = 0.5\n",
     "[station_type.house]\nkind = \"consumer\"\nstub = { pipe = \"dn20\" }\nunit = { kind = \"heat_load\", \
      load_kw = 2, return_degc = 30 }\n[[station]]\nsite = \"sf2\"\nname = \"flat\"\ntype = \"house\"\n",
     "[network]\nnodes = \"nodes.csv\"\npipes = 7\nlines = [\"hot\"]\n",

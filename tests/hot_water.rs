@@ -203,3 +203,102 @@ fn three_installations_with_the_same_draws() {
     // The tank is charged in a few goes a day, not all the time.
     assert!((2.0..40.0).contains(&c.4), "{}", c.4);
 }
+
+#[test]
+fn heat_cold_and_hot_water_come_from_files() {
+    let dir = tempfile::tempdir().unwrap();
+    // Heat in kW, cold in W, hot water in l/min, by the hour; heat beyond what the emulator takes is missing.
+    let csv = "hour,heat_kW,cold_W,taps\n0,12,0,0\n1,40,3000,6\n2,0,3000,0\n";
+    std::fs::write(dir.path().join("loads.csv"), csv).unwrap();
+    let text = r#"format = 1
+[run]
+until = "3h"
+step = "60s"
+initial_degc = 60
+[[site]]
+id = "h"
+[[edge]]
+id = "pipe"
+kind = "pipe"
+from = "h.hot"
+to = "h.cold"
+length_m = 100
+inner_diameter_mm = 22
+[pressure_reference]
+node = "h.cold"
+[[unit]]
+site = "h"
+name = "warm"
+kind = "storage"
+volume_l = 3000
+height_m = 2
+initial_degc = 70
+ports = { heating = { inlet_m = 0.1, outlet_m = 1.9 }, tap = { inlet_m = 0.1, outlet_m = 1.9 } }
+[[unit]]
+site = "h"
+name = "chilled"
+kind = "storage"
+volume_l = 3000
+height_m = 2
+initial_degc = 8
+ports = { cooling = { inlet_m = 1.9, outlet_m = 0.1 } }
+[[unit]]
+site = "h"
+name = "heat"
+kind = "heat_load"
+load_max_kw = 30
+temperature_difference_k = 20
+[[unit]]
+site = "h"
+name = "cold"
+kind = "cooling_load"
+temperature_difference_k = 5
+[[unit]]
+site = "h"
+name = "taps"
+kind = "domestic_hot_water"
+heated_by = "exchanger"
+[[circuit]]
+site = "h"
+id = "heating"
+through = ["heat", "warm.heating"]
+[[circuit]]
+site = "h"
+id = "cooling"
+through = ["cold", "chilled.cooling"]
+[[circuit]]
+site = "h"
+id = "tapping"
+through = ["taps", "warm.tap"]
+"#;
+    let series = [
+        ("heat_kW", "heat.load_w", "kW"),
+        ("cold_W", "cold.load_w", "W"),
+        ("taps", "taps.v_flow_m3_s", "l/min"),
+    ]
+    .map(|(column, signal, unit)| {
+        format!(
+            "[[series]]\nfile = \"loads.csv\"\ncolumn = \"{column}\"\ntime_column = \"hour\"\n\
+                 signal = \"h.{signal}\"\nunit = \"{unit}\"\ninterpolation = \"hold\"\n"
+        )
+    });
+    let text = text.to_owned() + &series.concat();
+    let model = Model::from_toml(&text, dir.path())
+        .unwrap_or_else(|problems| panic!("{}", problems.render(&text)));
+    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(&text)));
+    let mut simulation = Simulation::new(plan).unwrap();
+    let (mut heat_j, mut missing_j) = (0.0, 0.0);
+    for minute in 1..=180 {
+        let end = Time::from_s(60.0 * f64::from(minute)).unwrap();
+        simulation.advance_to(end, Time::from_s(60.0).unwrap()).unwrap();
+        heat_j -= 60.0 * get(&simulation, "h.heat.q_flow_w");
+        missing_j += 60.0 * get(&simulation, "h.heat.unmet_w");
+    }
+    // 12 + 30 kWh, and 10 kWh that the emulator cannot take.
+    assert!((heat_j / 3.6e6 - 42.0).abs() < 1e-6, "{heat_j}");
+    assert!((missing_j / 3.6e6 - 10.0).abs() < 1e-6, "{missing_j}");
+    // 3 kW for two hours; 6 l/min for one.
+    assert!((get(&simulation, "h.cold.cold_j") / 3.6e6 - 6.0).abs() < 1e-6);
+    assert!((get(&simulation, "h.taps.drawn_m3") - 0.36).abs() < 1e-9);
+    assert!(Balances::of(&simulation).units_error() < 1e-9);
+}

@@ -1,4 +1,4 @@
-//! Three-way valves: two valves, one command.
+//! Three-way valves and four-way mixers: several valves, one command.
 #![allow(clippy::unwrap_used)]
 
 use anergy_core::clock::Time;
@@ -120,6 +120,96 @@ fn the_plain_model_is_the_same() {
     let text = model.to_plain_toml().unwrap();
     let again = Model::from_toml(&text, Path::new(".")).unwrap();
     assert_eq!(steady::solve(&again).unwrap(), steady::solve(&model).unwrap());
+}
+
+/// A source of 80 degC and a load that returns 40 degC, each with 0.5 bar across the mixer.
+const FOUR_WAYS: &str = r#"
+format = 1
+[fluid]
+kind = "constant_water"
+density_kg_m3 = 1000
+heat_capacity_j_kg_k = 4200
+[[node]]
+id = "flow"
+kind = "pressure_boundary"
+pressure_bar = 1
+temperature_degc = 80
+[[node]]
+id = "back"
+kind = "pressure_boundary"
+pressure_bar = 0.5
+[[node]]
+id = "warm"
+kind = "pressure_boundary"
+pressure_bar = 0.5
+[[node]]
+id = "cold"
+kind = "pressure_boundary"
+pressure_bar = 1
+temperature_degc = 40
+[[four_way_mixer]]
+id = "mixer"
+source_supply = "flow"
+source_return = "back"
+load_supply = "warm"
+load_return = "cold"
+kvs_m3_h = 4
+"#;
+
+#[test]
+fn a_four_way_mixer_mixes_both_ways() {
+    let l = 1e-3;
+    let mut before: Option<(f64, f64)> = None;
+    for i in 0..=40 {
+        let x = f64::from(i) / 40.0;
+        let steady = steady::solve(&model(&format!("{FOUR_WAYS}opening = {x}\n"))).unwrap();
+        let flow = |way: &str| steady.edge(&format!("mixer.{way}")).unwrap().m_flow_kg_s;
+        let degc = |node: &str| steady.node(node).unwrap().t_k - 273.15;
+        // Each pair of ways as a three-way valve: 4/3.6 sqrt(0.5) kg/s and the leak, whatever x.
+        let total = 1.001 * 4.0 / 3.6 * 0.5_f64.sqrt();
+        assert!(((flow("supply") + flow("recirculation")) / total - 1.0).abs() < 1e-3, "{x}");
+        assert!(((flow("return") + flow("bypass")) / total - 1.0).abs() < 1e-3, "{x}");
+        // x of the source and 1 - x of the return to the load, the other way round to the source:
+        // 40 + 40 (l + (1 - l) x)/(1 + l).
+        let share = (l + (1.0 - l) * x) / (1.0 + l);
+        assert!((degc("warm") - (40.0 + 40.0 * share)).abs() < 0.05, "{x}: {}", degc("warm"));
+        assert!((degc("back") - (80.0 - 40.0 * share)).abs() < 0.05, "{x}: {}", degc("back"));
+        // What the source gives is what the load gets.
+        let cp = 4200.0;
+        let given = cp * (flow("supply") + flow("bypass")) * 80.0
+            - cp * (flow("return") + flow("bypass")) * degc("back");
+        let taken = cp * (flow("supply") + flow("recirculation")) * degc("warm")
+            - cp * (flow("return") + flow("recirculation")) * 40.0;
+        assert!((given - taken).abs() < 1e-6 * cp * 80.0, "{x}: {given} {taken}");
+        // Without a jump over the stroke.
+        let (warm, back) = (degc("warm"), degc("back"));
+        if let Some((warm_before, back_before)) = before {
+            assert!(warm > warm_before && warm - warm_before < 1.1 && back < back_before);
+        }
+        before = Some((warm, back));
+    }
+}
+
+#[test]
+fn the_ways_of_a_four_way_mixer_move_together() {
+    let text = format!("{FOUR_WAYS}opening = 0\nstroke_time_s = 10\n");
+    let plan = build(&model(&text)).unwrap();
+    let names: Vec<&str> = plan.signals().specs().iter().map(|s| s.name.as_str()).collect();
+    assert_eq!(names.iter().filter(|name| name.ends_with(".opening")).count(), 1, "{names:?}");
+    let mut simulation = Simulation::new(plan).unwrap();
+    let command = simulation.signal("mixer.opening").unwrap();
+    simulation.set(command, 0.6).unwrap();
+    let step = Time::from_s(1.0).unwrap();
+    for time_s in [3.0, 6.0, 30.0] {
+        simulation.advance_to(Time::from_s(time_s).unwrap(), step).unwrap();
+        let at = |way: &str| {
+            let channel = simulation.channel(&format!("mixer.{way}.opening")).unwrap();
+            simulation.get(channel)
+        };
+        assert_eq!(at("supply"), at("return"));
+        assert_eq!(at("recirculation"), at("bypass"));
+        assert!((at("supply") + at("bypass") - 1.0).abs() < 1e-12);
+    }
 }
 
 /// A pulsing mixer with a meter before each way.

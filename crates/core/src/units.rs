@@ -81,8 +81,14 @@ impl Unit {
     }
 }
 
+/// A share of the nominal mass flow, whose name in the field (`deltaM`) ends as if it were in metres.
+const SHARE_OF_FLOW: &str = "delta_m";
+
 /// The unit part of a name: `("length", "mm")` of `length_mm`; `None` without a known suffix.
 pub fn split_suffix(name: &str) -> Option<(&str, &str)> {
+    if name == SHARE_OF_FLOW {
+        return None;
+    }
     let known = |suffix: &str| {
         SI_SUFFIXES.contains(&suffix) || UNITS.iter().any(|unit| unit.suffix == suffix)
     };
@@ -141,6 +147,7 @@ mod tests {
         assert!(alternatives("supply_k").any(|(name, _)| name == "supply_degc"));
         assert_eq!(alternatives("temperature_difference_k").count(), 0);
         assert_eq!(alternatives("amplitude_k").count(), 0);
+        assert_eq!(alternatives("delta_m").count(), 0);
         assert_eq!(
             split_suffix("surface_resistance_m2_k_w"),
             Some(("surface_resistance", "m2_k_w"))

@@ -17,6 +17,7 @@ mod run;
 mod simulation;
 mod snapshot;
 mod steady;
+mod tables;
 
 /// The part of the package `anergy` that is written in Rust.
 #[pyo3::pymodule]

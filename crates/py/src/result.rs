@@ -62,7 +62,11 @@ fn view<'py>(owner: &Bound<'py, RunResult>, values: &[f64]) -> Bound<'py, PyArra
 }
 
 /// A function of the Python part of the package.
-fn python<'py>(py: Python<'py>, module: &str, function: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn python<'py>(
+    py: Python<'py>,
+    module: &str,
+    function: &str,
+) -> PyResult<Bound<'py, PyAny>> {
     py.import(module)?.getattr(function)
 }
 
@@ -184,73 +188,6 @@ impl RunResult {
     /// (True, True)
     fn kpis<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         python(slf.py(), "anergy._display", "kpis")?.call1((slf,))
-    }
-
-    /// The results as pandas.DataFrame: a column per channel, time_s as index.
-    ///
-    /// Parameters
-    /// ----------
-    /// channels : list of str, optional
-    ///     Only these.
-    ///
-    /// Raises
-    /// ------
-    /// ImportError
-    ///     Without pandas: `pip install anergy[pandas]`.
-    /// UnknownNameError
-    ///     For a channel that does not exist.
-    #[pyo3(signature = (channels=None))]
-    fn to_pandas<'py>(
-        slf: &Bound<'py, Self>,
-        channels: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        python(slf.py(), "anergy._export", "result_to_pandas")?.call1((slf, channels))
-    }
-
-    /// The results as xarray.Dataset: a variable per channel with its unit, dimension time_s.
-    ///
-    /// Parameters
-    /// ----------
-    /// channels : list of str, optional
-    ///     Only these.
-    ///
-    /// Raises
-    /// ------
-    /// ImportError
-    ///     Without xarray: `pip install anergy[xarray]`.
-    /// UnknownNameError
-    ///     For a channel that does not exist.
-    #[pyo3(signature = (channels=None))]
-    fn to_xarray<'py>(
-        slf: &Bound<'py, Self>,
-        channels: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        python(slf.py(), "anergy._export", "result_to_xarray")?.call1((slf, channels))
-    }
-
-    /// Writes the results as a Parquet file: `time_s`, then a column per channel with its unit as metadata.
-    ///
-    /// Parameters
-    /// ----------
-    /// path : str or os.PathLike
-    ///     The file; an existing one is replaced.
-    /// channels : list of str, optional
-    ///     Only these.
-    ///
-    /// Raises
-    /// ------
-    /// ImportError
-    ///     Without pyarrow: `pip install anergy[parquet]`.
-    /// UnknownNameError
-    ///     For a channel that does not exist.
-    #[pyo3(signature = (path, channels=None))]
-    fn to_parquet(
-        slf: &Bound<'_, Self>,
-        path: PathBuf,
-        channels: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<()> {
-        python(slf.py(), "anergy._export", "result_to_parquet")?.call1((slf, path, channels))?;
-        Ok(())
     }
 
     /// Plots channels over time with matplotlib, shaded where their components are blocked or swing.

@@ -222,6 +222,32 @@ def test_arrow_streams(result):
     assert read[FLOW].to_pylist() == expected
 
 
+def test_csv(result, tmp_path):
+    result.to_csv(tmp_path / "all.csv")
+    head, *rows = (tmp_path / "all.csv").read_text().splitlines()
+    names = head.split(",")
+    assert names[0] == "time_s" and names[-len(result) :] == list(result)
+    column = [row.split(",")[names.index(FLOW)] for row in rows]
+    assert [float(value) for value in column] == result[FLOW].tolist()
+
+    result.to_csv(tmp_path / "some.csv", ["*.t_k", FLOW], every_s=120, units=["degc", "l_min"])
+    head, *rows = (tmp_path / "some.csv").read_text().splitlines()
+    assert FLOW.replace("kg_s", "l_min") not in head and FLOW in head and ".t_degc" in head
+    assert [float(row.split(",")[0]) % 120 for row in rows] == [0.0] * len(rows)
+
+    result.to_csv(tmp_path / "one.csv", FLOW)
+    assert (tmp_path / "one.csv").read_text().splitlines()[0] in (f"time_s,{FLOW}", f"time_s,time,{FLOW}")
+    with pytest.raises(ValueError, match="no channel matches"):
+        result.to_csv(tmp_path / "no.csv", ["sf1.station.nothing"])
+    with pytest.raises(ValueError, match="is no unit"):
+        result.to_csv(tmp_path / "no.csv", units=["degf"])
+    with pytest.raises(ValueError, match="above 0"):
+        result.to_csv(tmp_path / "no.csv", every_s=0.0)
+    assert not (tmp_path / "no.csv").exists()
+    with pytest.raises(FileNotFoundError):
+        result.to_csv(tmp_path / "missing" / "no.csv")
+
+
 def test_parquet(result, tmp_path):
     parquet = pytest.importorskip("pyarrow.parquet")
     result.to_parquet(tmp_path / "all.parquet")

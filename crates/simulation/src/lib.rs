@@ -32,6 +32,16 @@
 //! let steady = anergy_simulation::steady::solve(&model).unwrap();
 //! // sqrt(H0/(a + K)) with K = 1 hPa/(l/min)^2: 18.8548 l/min
 //! assert!((steady.edge("pump").unwrap().m_flow_kg_s * 60.0 - 18.8548).abs() < 1e-3);
+//!
+//! // Stepped, with the pump at half its speed: flow is in proportion.
+//! use anergy_core::clock::Time;
+//! let plan = anergy_simulation::build::build(&model).unwrap();
+//! let mut simulation = anergy_simulation::simulation::Simulation::new(plan).unwrap();
+//! let (speed, flow) =
+//!     (simulation.signal("pump.speed").unwrap(), simulation.channel("pump.m_flow_kg_s").unwrap());
+//! simulation.set(speed, 0.5).unwrap();
+//! simulation.advance_to(Time::from_s(10.0).unwrap(), Time::from_s(1.0).unwrap()).unwrap();
+//! assert!((simulation.get(flow) * 60.0 - 0.5 * 18.8548).abs() < 1e-2);
 //! ```
 
 pub mod automatic_step;

@@ -19,9 +19,9 @@ mod prosumer_station;
 pub mod read;
 pub mod schema;
 pub mod series;
+mod shared_command;
 mod station_parts;
 mod tables;
-mod three_way_valve;
 mod weather;
 
 pub use balancing_unit::BalancingUnitEntry;
@@ -32,8 +32,8 @@ pub use houses::{CircuitEntry, InterfaceEntry};
 pub use nodes::{NodeEntry, NodeEntryKind, PressureReferenceEntry};
 pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use prosumer_station::{Directions, Extraction, FlowControl, ProsumerEntry};
+pub use shared_command::{FourWayMixerEntry, ThreeWayMode, ThreeWayValveEntry};
 pub use tables::NetworkEntry;
-pub use three_way_valve::{ThreeWayMode, ThreeWayValveEntry};
 pub use weather::{Means, WeatherEntry, WeatherKind};
 
 use anergy_core::clock::Time;
@@ -371,7 +371,8 @@ pub struct SeriesEntry {
     /// Between the rows.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// The column with the time: s since the start, or RFC 3339 with `[run] start`. Absent: the first.
+    /// The column with the time: s since the start, in another unit where its name says so (`time_h`, `hour`), or RFC 3339
+    /// with `[run] start`. Absent: the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_column: Option<String>,
     /// Field separator.

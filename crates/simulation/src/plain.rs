@@ -249,7 +249,9 @@ fn collect(
             Some(written) if written.span != Span::NONE && written.span == place.span => {
                 let others = [", circulation_pump", ", generator"];
                 if others.iter().any(|part| place.entry.ends_with(part))
-                    || place.entry.starts_with("three_way_valve")
+                    || ["three_way_valve", "four_way_mixer"]
+                        .iter()
+                        .any(|section| place.entry.starts_with(section))
                 {
                     "the composite's default"
                 } else {

@@ -2,7 +2,7 @@
 //!
 //! **Equation** `m = Q/(cp (T_return - T_in))` with a given return temperature, or `m = Q/(cp dT)` with a given
 //! temperature difference; at least the by-pass flow, at most `v_flow_max_m3_s`. The water takes up `Q`, but is not
-//! warmed above `warmest_return_k`; what is missing is `unmet_w`.
+//! warmed above `warmest_return_k`, nor by more than `load_max_w`; what is missing is `unmet_w`.
 //!
 //! **Assumptions** no storage, no room: the load does not react. On a station it feeds in: it draws from the cold line
 //! and returns into the hot one. **Numerics** flow and limit follow from the temperature that arrived in the step
@@ -26,6 +26,9 @@ pub struct CoolingLoadParams {
     /// Cooling demand while no series drives it, W.
     #[serde(default)]
     pub load_w: f64,
+    /// The largest power that an emulated load can take, W; what is demanded beyond is `unmet_w`. Absent: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_max_w: Option<f64>,
     /// Temperature of the returned water, K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub return_k: Option<f64>,
@@ -55,6 +58,7 @@ impl Default for CoolingLoadParams {
     fn default() -> Self {
         Self {
             load_w: 4000.0,
+            load_max_w: None,
             return_k: None,
             temperature_difference_k: Some(5.0),
             v_flow_min_m3_s: 0.0,
@@ -74,6 +78,7 @@ enum ReturnWater {
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoolingLoad {
     load_w: f64,
+    load_max_w: f64,
     return_water: ReturnWater,
     m_flow_min_kg_s: f64,
     m_flow_max_kg_s: f64,
@@ -105,6 +110,10 @@ impl CoolingLoadParams {
         if !self.load_w.is_finite() || self.load_w < 0.0 {
             return out_of_range("load_w", self.load_w, "must not be negative");
         }
+        let load_max_w = self.load_max_w.unwrap_or(f64::INFINITY);
+        if load_max_w.is_nan() || load_max_w <= 0.0 {
+            return out_of_range("load_max_w", load_max_w, "must be positive");
+        }
         if self.v_flow_min_m3_s.is_nan() || self.v_flow_min_m3_s < 0.0 {
             return out_of_range("v_flow_min_m3_s", self.v_flow_min_m3_s, "must not be negative");
         }
@@ -117,6 +126,7 @@ impl CoolingLoadParams {
         }
         Ok(CoolingLoad {
             load_w: self.load_w,
+            load_max_w,
             return_water,
             m_flow_min_kg_s: self.v_flow_min_m3_s * medium.density_kg_m3,
             m_flow_max_kg_s: self.v_flow_max_m3_s * medium.density_kg_m3,
@@ -160,7 +170,7 @@ impl ThermalUnit for CoolingLoad {
         state: &mut [f64],
         wanted: &mut [PortRequest],
     ) {
-        let (load_w, t_in_k) = (signals.get(0).max(0.0), state[0]);
+        let (load_w, t_in_k) = (signals.get(0).clamp(0.0, self.load_max_w), state[0]);
         let (difference_k, limit_k) = match self.return_water {
             ReturnWater::Difference(difference_k) => (difference_k, self.warmest_return_k),
             ReturnWater::Temperature(t_k) => {
@@ -217,6 +227,18 @@ mod tests {
         assert!((q_w - 1600.0).abs() < 1e-6, "{q_w}");
         assert_eq!(request(&unit, 299.15, 4000.0).outlet, Outlet::HeatFlow(0.0));
         assert_eq!(request(&unit, 288.15, 0.0).m_flow_kg_s, 0.0);
+    }
+
+    #[test]
+    fn an_emulator_takes_no_more_than_it_can() {
+        // 9 kW over 5 K: 0.430622 kg/s
+        let params = CoolingLoadParams { load_max_w: Some(9000.0), ..CoolingLoadParams::default() };
+        let unit = params.build(&Medium::default()).unwrap();
+        let wanted = request(&unit, 288.15, 12_000.0);
+        assert_eq!(wanted.outlet, Outlet::HeatFlow(9000.0));
+        assert!((wanted.m_flow_kg_s - 0.430_622).abs() < 1e-6);
+        let params = CoolingLoadParams { load_max_w: Some(f64::NAN), ..params };
+        assert!(params.build(&Medium::default()).is_err());
     }
 
     #[test]

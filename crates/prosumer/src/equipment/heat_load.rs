@@ -2,7 +2,8 @@
 //!
 //! **Equation** `m = Q/(cp (T_in - T_return))` with a given return temperature, or `m = Q/(cp dT)` with
 //! a given temperature difference; at least the by-pass flow, at most `v_flow_max_m3_s`. The water
-//! gives off `Q`, but is not cooled below `coldest_return_k`; what is missing is `unmet_w`.
+//! gives off `Q`, but is not cooled below `coldest_return_k`; what is missing is `unmet_w`. The emulator of a
+//! laboratory takes no more than `load_max_w`: 30 kW of heat at houses SF1 to SF4, 60 kW at MF5 (`zinsmeister2024`).
 //!
 //! **Assumptions** no storage, no room: the load does not react. **Numerics** the flow follows from the
 //! temperature that arrived in the step before; the heat is exact with the flow of the present step, and the
@@ -28,6 +29,9 @@ pub struct HeatLoadParams {
     /// Heat demand while no series drives it, W.
     #[serde(default)]
     pub load_w: f64,
+    /// The largest power that an emulated load can take, W; what is demanded beyond is `unmet_w`. Absent: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_max_w: Option<f64>,
     /// Temperature of the returned water, K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub return_k: Option<f64>,
@@ -57,6 +61,7 @@ impl Default for HeatLoadParams {
     fn default() -> Self {
         Self {
             load_w: 10_000.0,
+            load_max_w: None,
             return_k: None,
             temperature_difference_k: Some(30.0),
             v_flow_min_m3_s: 0.0,
@@ -76,6 +81,7 @@ enum ReturnWater {
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatLoad {
     load_w: f64,
+    load_max_w: f64,
     return_water: ReturnWater,
     m_flow_min_kg_s: f64,
     m_flow_max_kg_s: f64,
@@ -107,6 +113,10 @@ impl HeatLoadParams {
         if !self.load_w.is_finite() || self.load_w < 0.0 {
             return out_of_range("load_w", self.load_w, "must not be negative");
         }
+        let load_max_w = self.load_max_w.unwrap_or(f64::INFINITY);
+        if load_max_w.is_nan() || load_max_w <= 0.0 {
+            return out_of_range("load_max_w", load_max_w, "must be positive");
+        }
         if self.v_flow_min_m3_s.is_nan() || self.v_flow_min_m3_s < 0.0 {
             return out_of_range("v_flow_min_m3_s", self.v_flow_min_m3_s, "must not be negative");
         }
@@ -119,6 +129,7 @@ impl HeatLoadParams {
         }
         Ok(HeatLoad {
             load_w: self.load_w,
+            load_max_w,
             return_water,
             m_flow_min_kg_s: self.v_flow_min_m3_s * medium.density_kg_m3,
             m_flow_max_kg_s: self.v_flow_max_m3_s * medium.density_kg_m3,
@@ -173,7 +184,7 @@ impl ThermalUnit for HeatLoad {
         state: &mut [f64],
         wanted: &mut [PortRequest],
     ) {
-        let (load_w, t_in_k) = (signals.get(0).max(0.0), state[0]);
+        let (load_w, t_in_k) = (signals.get(0).clamp(0.0, self.load_max_w), state[0]);
         let m = self.m_flow_kg_s(load_w, t_in_k);
         let limit_k = match self.return_water {
             ReturnWater::Temperature(t_k) => t_k.max(self.coldest_return_k),
@@ -225,6 +236,24 @@ mod tests {
         // Water of 283.15 K can give 0.079745 * 4180 * 5 = 1666.7 W before it is at 5 degC.
         let q_w = request(&unit, 283.15, 10_000.0).outlet.heat_flow_w().unwrap();
         assert!((q_w + 1666.7).abs() < 0.1, "{q_w}");
+    }
+
+    #[test]
+    fn an_emulator_takes_no_more_than_it_can() {
+        let params = HeatLoadParams { load_max_w: Some(30_000.0), ..HeatLoadParams::default() };
+        let unit = params.build(&Medium::default()).unwrap();
+        assert_eq!(request(&unit, 340.0, 29_000.0).outlet.heat_flow_w(), Some(-29_000.0));
+        let wanted = request(&unit, 340.0, 42_000.0);
+        assert_eq!(wanted.outlet.heat_flow_w(), Some(-30_000.0));
+        // 30 kW over 30 K: 0.239234 kg/s; 12 kW are told as missing.
+        assert!((wanted.m_flow_kg_s + 0.239_234).abs() < 1e-6);
+        let got = PortFlow { m_flow_kg_s: wanted.m_flow_kg_s, t_in_k: 340.0, t_out_k: 310.0 };
+        let mut out = [0.0; 5];
+        unit.advance(1.0, &Signals(&[42_000.0]), &[got], &mut [340.0], &mut out);
+        assert!((out[4] - 12_000.0).abs() < 1e-6, "{}", out[4]);
+        assert!(
+            HeatLoadParams { load_max_w: Some(0.0), ..params }.build(&Medium::default()).is_err()
+        );
     }
 
     #[test]

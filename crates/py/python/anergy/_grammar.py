@@ -26,6 +26,7 @@ LEADING: dict[str, tuple[str, ...]] = {
     "node": ("id",),
     "edge": ("id", "from", "to"),
     "three_way_valve": ("id", "a", "b", "ab"),
+    "four_way_mixer": ("id", "source_supply", "source_return", "load_supply", "load_return"),
     "interface": ("id", "edge"),
     "unit": ("site",),
     "circuit": ("id", "through"),

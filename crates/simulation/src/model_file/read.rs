@@ -13,8 +13,8 @@ mod pipe_types;
 mod plants;
 mod sections;
 mod sensors;
+mod shared_commands;
 mod station_types;
-mod three_way_valves;
 mod units;
 mod weather;
 
@@ -187,6 +187,7 @@ impl ModelReader<'_> {
         self.sites = HashMap::new();
         self.hold_worst_consumers(&stations);
         self.three_way_valves();
+        self.four_way_mixers();
         let plain = |tree: Tree| Plain { tree, owner: "".into(), entry: "".into() };
         for tree in self.items("node") {
             self.add_nodes([plain(tree)]);

@@ -40,8 +40,9 @@ pub fn schema() -> Value {
     if let Some(object) = pipe_type.as_object_mut() {
         object.remove("required");
     }
-    let three_way_valve = {
-        let own = entry(&schema_for!(ThreeWayValveEntry), &[]);
+    // Several valves with one command: its own fields and those of a valve.
+    let valves = |own: &schemars::Schema, required: &[&str]| {
+        let own = entry(own, &[]);
         let properties = own["properties"].as_object().into_iter().flatten();
         let own: Vec<(&str, Value)> =
             properties.map(|(name, schema)| (name.as_str(), schema.clone())).collect();
@@ -50,9 +51,14 @@ pub fn schema() -> Value {
         for field in ["command_of", "inverse"] {
             valve["properties"].as_object_mut().and_then(|fields| fields.remove(field));
         }
-        valve["required"] = json!(["id", "a", "b", "ab"]);
+        valve["required"] = json!(required);
         valve
     };
+    let three_way_valve = valves(&schema_for!(ThreeWayValveEntry), &["id", "a", "b", "ab"]);
+    let four_way_mixer = valves(
+        &schema_for!(FourWayMixerEntry),
+        &["id", "source_supply", "source_return", "load_supply", "load_return"],
+    );
     let station = station_schema();
     let mut station_type = station.clone();
     for schema in station_type["oneOf"].as_array_mut().into_iter().flatten() {
@@ -81,6 +87,7 @@ pub fn schema() -> Value {
         "node": list(entry(&schema_for!(NodeEntry), &[])),
         "edge": list(kinds("kind", ElementParams::KINDS, ElementParams::schema, &edge_ends, &["id", "from", "to"])),
         "three_way_valve": list(three_way_valve),
+        "four_way_mixer": list(four_way_mixer),
         "interface": list(entry(&schema_for!(InterfaceEntry), &[])),
         "unit": list(kinds(
             "kind",

@@ -6,6 +6,7 @@ use super::SeriesEntry;
 use super::tables::separator_byte;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::Tree;
+use anergy_core::units::{Unit, split_suffix};
 use jiff::Timestamp;
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -186,6 +187,7 @@ fn contents(
             .and_then(|_| find(&headers, name, time, "time_column"))?,
         None => 0,
     };
+    let time_unit = time_unit(&headers[time_column]);
     let places = headers.iter().enumerate().filter(|(_, header)| wanted.contains(header.as_str()));
     // Of columns with the same name the first counts.
     let mut columns: Vec<(usize, Vec<f64>, Option<Problem>)> = Vec::new();
@@ -226,7 +228,7 @@ fn contents(
         if times.1.is_some() {
             continue;
         }
-        match time_s(cell(time_column).trim(), start) {
+        match time_s(cell(time_column).trim(), time_unit, start) {
             Err(problem) => {
                 let message = format!("{name} line {line}: {problem}");
                 times.1 = Some(Problem::new("file", line, message));
@@ -259,14 +261,52 @@ fn parse_finite(text: &str) -> Option<f64> {
     text.parse::<f64>().ok().filter(|value| value.is_finite())
 }
 
+/// The unit of a column of times by its name: `time_h`, `hour`, `day`; `None`: s.
+fn time_unit(header: &str) -> Option<Unit> {
+    let word = match header.to_lowercase().trim_end_matches('s') {
+        "hour" | "h" => "h",
+        "minute" | "min" => "min",
+        "day" | "d" => "d",
+        _ => split_suffix(header)?.1,
+    };
+    Unit::find(word).filter(|unit| unit.si == "s")
+}
+
 /// Seconds since the start of the run.
-fn time_s(text: &str, start: Option<Timestamp>) -> Result<f64, String> {
-    if let Some(seconds) = parse_finite(text) {
-        return Ok(seconds);
+fn time_s(text: &str, unit: Option<Unit>, start: Option<Timestamp>) -> Result<f64, String> {
+    if let Some(time) = parse_finite(text) {
+        return Ok(unit.map_or(time, |unit| unit.to_si(time)));
     }
     let time: Timestamp = text
         .parse()
         .map_err(|_| format!("time \"{text}\" is neither a number of seconds nor RFC 3339"))?;
     let start = start.ok_or("calendar times need `start` in [run]")?;
     Ok((time.as_nanosecond() - start.as_nanosecond()) as f64 / 1e9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_a_column_says_the_unit_of_its_times() {
+        let seconds = |header: &str| time_unit(header).map_or(1.0, |unit| unit.to_si(1.0));
+        for (header, expected) in [
+            ("time_s", 1.0),
+            ("time", 1.0),
+            ("timestamp", 1.0),
+            ("t", 1.0),
+            ("time_min", 60.0),
+            ("time_h", 3600.0),
+            ("Hour", 3600.0),
+            ("hours", 3600.0),
+            ("h", 3600.0),
+            ("day", 86_400.0),
+            ("elapsed_d", 86_400.0),
+            ("time_kw", 1.0),
+        ] {
+            assert_eq!(seconds(header), expected, "{header}");
+        }
+        assert_eq!(time_s("1.5", time_unit("time_h"), None), Ok(5400.0));
+    }
 }

@@ -20,6 +20,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "node",
     "edge",
     "three_way_valve",
+    "four_way_mixer",
     "interface",
     "unit",
     "circuit",
@@ -34,7 +35,7 @@ pub(crate) const SECTIONS: &[&str] = &[
 ];
 
 /// Those that can occur several times.
-pub(super) const LISTS: [&str; 18] = [
+pub(super) const LISTS: [&str; 19] = [
     "house",
     "site",
     "trench",
@@ -42,6 +43,7 @@ pub(super) const LISTS: [&str; 18] = [
     "node",
     "edge",
     "three_way_valve",
+    "four_way_mixer",
     "interface",
     "unit",
     "circuit",
