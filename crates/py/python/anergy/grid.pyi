@@ -28,9 +28,6 @@ class _Stub(TypedDict, total=False):
     fixed_velocity_m_s: float
     friction_factor: float
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
     insulation_resistance_k_m_w: float
     heat_loss_factor: float
     wall: Literal["none", "end_volume", "equilibrium", "film"]
@@ -104,9 +101,6 @@ class _HeatExchanger(TypedDict, total=False):
     wall_capacity_j_k: float
     wall_capacity_kj_k: float
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
     partner: str
 
 class _FeedInPump(TypedDict, total=False):
@@ -175,9 +169,6 @@ class _FeedInPump(TypedDict, total=False):
     standby_kw: float
     standby_mw: float
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
 
 class _FeedInCheckValve(TypedDict, total=False):
     kvs_m3_h: float
@@ -186,9 +177,6 @@ class _FeedInCheckValve(TypedDict, total=False):
     m_flow_nominal_kg_min: float
     m_flow_nominal_kg_h: float
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
 
 class _ExtractionValve(TypedDict, total=False):
     kvs_m3_h: float
@@ -217,9 +205,6 @@ class _ExtractionValve(TypedDict, total=False):
     m_flow_nominal_kg_min: float
     m_flow_nominal_kg_h: float
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
 
 class _Generator(TypedDict, total=False):
     dp_nominal_pa: float
@@ -245,9 +230,6 @@ class _Generator(TypedDict, total=False):
     curve_dp_bar: Sequence[float]
     curve_dp_mpa: Sequence[float]
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
 
 class _ShutOff(TypedDict, total=False):
     kvs_m3_h: float
@@ -262,9 +244,6 @@ class _ShutOff(TypedDict, total=False):
     m_flow_nominal_kg_min: float
     m_flow_nominal_kg_h: float
     delta_m: float
-    delta_mm: float
-    delta_cm: float
-    delta_km: float
 
 class _Map(TypedDict, total=False):
     file: str
@@ -1460,9 +1439,6 @@ class _Edge:
         fixed_velocity_m_s: float | None = None,
         friction_factor: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
         insulation_resistance_k_m_w: float | None = None,
         heat_loss_factor: float | None = None,
         wall: Literal["none", "end_volume", "equilibrium", "film"] | None = None,
@@ -1549,8 +1525,7 @@ class _Edge:
         friction_factor
             A friction factor (Darcy: four times Fanning's) that holds at any flow, instead of a correlation.
         delta_m
-            Below this share of the nominal flow a fixed coefficient is regularised. Default: 0.3. Also
-            delta_mm, delta_cm, delta_km.
+            Below this share of the nominal flow a fixed coefficient is regularised. Default: 0.3.
         insulation_resistance_k_m_w
             Thermal resistance water to surroundings per length, K m/W. Absent: no heat loss.
         heat_loss_factor
@@ -1686,9 +1661,6 @@ class _Edge:
         standby_kw: float | None = None,
         standby_mw: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "pump".
 
@@ -1765,8 +1737,7 @@ class _Edge:
         standby_w
             Electric power while off, W. Default: 0.0. Also standby_kw, standby_mw.
         delta_m
-            Regularised below this share of the nominal flow (half the free flow). Default: 0.01. Also
-            delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow (half the free flow). Default: 0.01.
         """
     def valve(
         self,
@@ -1800,9 +1771,6 @@ class _Edge:
         m_flow_nominal_kg_min: float | None = None,
         m_flow_nominal_kg_h: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "valve".
 
@@ -1858,7 +1826,7 @@ class _Edge:
             Nominal flow for the regularisation, kg/s. Absent: flow at 0.1 bar when open. Also
             m_flow_nominal_kg_min, m_flow_nominal_kg_h.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.02. Also delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow. Default: 0.02.
         """
     def ball_valve(
         self,
@@ -1878,9 +1846,6 @@ class _Edge:
         m_flow_nominal_kg_min: float | None = None,
         m_flow_nominal_kg_h: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "ball_valve".
 
@@ -1909,7 +1874,7 @@ class _Edge:
             Nominal flow for the regularisation, kg/s. Absent: flow at 0.1 bar when open. Also
             m_flow_nominal_kg_min, m_flow_nominal_kg_h.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.02. Also delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow. Default: 0.02.
         """
     def overflow_valve(
         self,
@@ -1932,9 +1897,6 @@ class _Edge:
         band_dp_mpa: float | None = None,
         leakage: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "overflow_valve".
 
@@ -1959,8 +1921,7 @@ class _Edge:
         leakage
             Flow coefficient of the shut valve over that of the open one. Default: 0.001.
         delta_m
-            Regularised below this share of the flow at 0.1 bar. Default: 0.02. Also delta_mm, delta_cm,
-            delta_km.
+            Regularised below this share of the flow at 0.1 bar. Default: 0.02.
         """
     def flow_limiter(
         self,
@@ -1977,9 +1938,6 @@ class _Edge:
         rise_time_h: float | None = None,
         rise_time_d: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "flow_limiter".
 
@@ -2001,8 +1959,7 @@ class _Edge:
             Time in which the set flow follows its command by 99.6 %, s. Default: 0.0. Also rise_time_min,
             rise_time_h, rise_time_d.
         delta_m
-            Regularised below this share of the flow at 0.1 bar. Default: 0.02. Also delta_mm, delta_cm,
-            delta_km.
+            Regularised below this share of the flow at 0.1 bar. Default: 0.02.
         """
     def dp_controller(
         self,
@@ -2031,9 +1988,6 @@ class _Edge:
         lag_d: float | None = None,
         leakage: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "dp_controller".
 
@@ -2064,8 +2018,7 @@ class _Edge:
         leakage
             Flow coefficient of the shut valve over that of the open one. Default: 0.001.
         delta_m
-            Regularised below this share of the flow at 0.1 bar. Default: 0.02. Also delta_mm, delta_cm,
-            delta_km.
+            Regularised below this share of the flow at 0.1 bar. Default: 0.02.
         """
     def pressure_reducing_valve(
         self,
@@ -2093,9 +2046,6 @@ class _Edge:
         lag_d: float | None = None,
         leakage: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "pressure_reducing_valve".
 
@@ -2124,8 +2074,7 @@ class _Edge:
         leakage
             Flow coefficient of the shut valve over that of the open one. Default: 0.001.
         delta_m
-            Regularised below this share of the flow at 0.1 bar. Default: 0.02. Also delta_mm, delta_cm,
-            delta_km.
+            Regularised below this share of the flow at 0.1 bar. Default: 0.02.
         """
     def pressure_sustaining_valve(
         self,
@@ -2153,9 +2102,6 @@ class _Edge:
         lag_d: float | None = None,
         leakage: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "pressure_sustaining_valve".
 
@@ -2184,8 +2130,7 @@ class _Edge:
         leakage
             Flow coefficient of the shut valve over that of the open one. Default: 0.001.
         delta_m
-            Regularised below this share of the flow at 0.1 bar. Default: 0.02. Also delta_mm, delta_cm,
-            delta_km.
+            Regularised below this share of the flow at 0.1 bar. Default: 0.02.
         """
     def check_valve(
         self,
@@ -2199,9 +2144,6 @@ class _Edge:
         m_flow_nominal_kg_min: float | None = None,
         m_flow_nominal_kg_h: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "check_valve".
 
@@ -2223,7 +2165,7 @@ class _Edge:
             Nominal flow for the regularisation, kg/s. Default: 0.3584. Also m_flow_nominal_kg_min,
             m_flow_nominal_kg_h.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.02. Also delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow. Default: 0.02.
         """
     def resistance(
         self,
@@ -2254,9 +2196,6 @@ class _Edge:
         curve_dp_bar: Sequence[float] | None = None,
         curve_dp_mpa: Sequence[float] | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "resistance".
 
@@ -2288,7 +2227,7 @@ class _Edge:
             Pressure losses of the table, Pa, rising from 0. Also curve_dp_hpa, curve_dp_mbar, curve_dp_kpa,
             curve_dp_bar, curve_dp_mpa.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.3. Also delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow. Default: 0.3.
         """
     def heat_exchanger(
         self,
@@ -2318,9 +2257,6 @@ class _Edge:
         wall_capacity_j_k: float | None = None,
         wall_capacity_kj_k: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
         partner: str | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "heat_exchanger".
@@ -2357,7 +2293,7 @@ class _Edge:
             Heat capacity of the metal between the two sides, J/K: each side carries half of it. Absent: none.
             Default: 0.0. Also wall_capacity_kj_k.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.3. Also delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow. Default: 0.3.
         partner
             The edge that is the other side, in another circuit; then its UA counts and this one's not.
         """
@@ -2379,9 +2315,6 @@ class _Edge:
         dp_nominal_bar: float | None = None,
         dp_nominal_mpa: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
     ) -> str:
         """Adds `[[edge]]` with kind = "heat_meter".
 
@@ -2405,7 +2338,7 @@ class _Edge:
             Pressure loss at the nominal flow, Pa. Default: 25000.0. Also dp_nominal_hpa, dp_nominal_mbar,
             dp_nominal_kpa, dp_nominal_bar, dp_nominal_mpa.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.3. Also delta_mm, delta_cm, delta_km.
+            Regularised below this share of the nominal flow. Default: 0.3.
         """
     def flow_source(
         self,
@@ -2520,6 +2453,9 @@ class _Unit:
         load_w: float | None = None,
         load_kw: float | None = None,
         load_mw: float | None = None,
+        load_max_w: float | None = None,
+        load_max_kw: float | None = None,
+        load_max_mw: float | None = None,
         return_k: float | None = None,
         return_degc: float | None = None,
         temperature_difference_k: float | None = None,
@@ -2554,6 +2490,9 @@ class _Unit:
             Edge it stands on, where no site is given and not all its ports are in circuits
         load_w
             Heat demand while no series drives it, W. Default: 0.0. Also load_kw, load_mw.
+        load_max_w
+            The largest power that an emulated load can take, W; what is demanded beyond is `unmet_w`. Absent:
+            no limit. Also load_max_kw, load_max_mw.
         return_k
             Temperature of the returned water, K. Also return_degc.
         temperature_difference_k
@@ -4822,6 +4761,9 @@ class _Unit:
         load_w: float | None = None,
         load_kw: float | None = None,
         load_mw: float | None = None,
+        load_max_w: float | None = None,
+        load_max_kw: float | None = None,
+        load_max_mw: float | None = None,
         return_k: float | None = None,
         return_degc: float | None = None,
         temperature_difference_k: float | None = None,
@@ -4856,6 +4798,9 @@ class _Unit:
             Edge it stands on, where no site is given and not all its ports are in circuits
         load_w
             Cooling demand while no series drives it, W. Default: 0.0. Also load_kw, load_mw.
+        load_max_w
+            The largest power that an emulated load can take, W; what is demanded beyond is `unmet_w`. Absent:
+            no limit. Also load_max_kw, load_max_mw.
         return_k
             Temperature of the returned water, K. Also return_degc.
         temperature_difference_k
@@ -7043,9 +6988,6 @@ class Grid:
         fixed_velocity_m_s: float | None = None,
         friction_factor: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
         insulation_resistance_k_m_w: float | None = None,
         heat_loss_factor: float | None = None,
         wall: Literal["none", "end_volume", "equilibrium", "film"] | None = None,
@@ -7128,8 +7070,7 @@ class Grid:
         friction_factor
             A friction factor (Darcy: four times Fanning's) that holds at any flow, instead of a correlation.
         delta_m
-            Below this share of the nominal flow a fixed coefficient is regularised. Default: 0.3. Also
-            delta_mm, delta_cm, delta_km.
+            Below this share of the nominal flow a fixed coefficient is regularised. Default: 0.3.
         insulation_resistance_k_m_w
             Thermal resistance water to surroundings per length, K m/W. Absent: no heat loss.
         heat_loss_factor
@@ -7435,9 +7376,6 @@ class Grid:
         fixed_velocity_m_s: float | None = None,
         friction_factor: float | None = None,
         delta_m: float | None = None,
-        delta_mm: float | None = None,
-        delta_cm: float | None = None,
-        delta_km: float | None = None,
         insulation_resistance_k_m_w: float | None = None,
         heat_loss_factor: float | None = None,
         wall: Literal["none", "end_volume", "equilibrium", "film"] | None = None,
@@ -7522,8 +7460,7 @@ class Grid:
         friction_factor
             A friction factor (Darcy: four times Fanning's) that holds at any flow, instead of a correlation.
         delta_m
-            Below this share of the nominal flow a fixed coefficient is regularised. Default: 0.3. Also
-            delta_mm, delta_cm, delta_km.
+            Below this share of the nominal flow a fixed coefficient is regularised. Default: 0.3.
         insulation_resistance_k_m_w
             Thermal resistance water to surroundings per length, K m/W. Absent: no heat loss.
         heat_loss_factor
@@ -7681,8 +7618,8 @@ class Grid:
         table_phi: Sequence[float] | None = None,
         leakage: float | None = None,
         command: Literal["opening", "kappa"] | None = None,
-        delta_km: float | None = None,
-        delta_cm: float | None = None,
+        delta_m: float | None = None,
+        m_flow_nominal_kg_h: float | None = None,
         switch_at: float | None = None,
         pulse_period_s: float | None = None,
         pulse_period_min: float | None = None,
@@ -7697,9 +7634,6 @@ class Grid:
         stroke_time_d: float | None = None,
         m_flow_nominal_kg_s: float | None = None,
         m_flow_nominal_kg_min: float | None = None,
-        m_flow_nominal_kg_h: float | None = None,
-        delta_m: float | None = None,
-        delta_mm: float | None = None,
     ) -> str:
         """Adds `[[three_way_valve]]`.
 
@@ -7738,6 +7672,8 @@ class Grid:
             Coefficient of the closed valve over that of the open one; 0 is tight. Default: 0.001.
         command
             What the command means. One of opening, kappa. Default: opening.
+        delta_m
+            Regularised below this share of the nominal flow. Default: 0.02.
         switch_at
             Command from which on it opens fully, and below which it closes: a switching valve. Absent: it
             takes any opening.
@@ -7756,9 +7692,95 @@ class Grid:
             stroke_time_h, stroke_time_d.
         m_flow_nominal_kg_s
             Nominal flow for the regularisation, kg/s. Absent: flow at 0.1 bar when open. Also
-            m_flow_nominal_kg_min, m_flow_nominal_kg_h.
+            m_flow_nominal_kg_h, m_flow_nominal_kg_min.
+        """
+    def four_way_mixer(
+        self,
+        id: str,
+        source_supply: str,
+        source_return: str,
+        load_supply: str,
+        load_return: str,
+        *,
+        kvs_m3_h: float | None = None,
+        characteristic: Literal["linear", "equal_percentage", "quick_opening", "table"] | None = None,
+        rangeability: float | None = None,
+        alpha: float | None = None,
+        table_opening: Sequence[float] | None = None,
+        table_phi: Sequence[float] | None = None,
+        leakage: float | None = None,
+        command: Literal["opening", "kappa"] | None = None,
+        delta_m: float | None = None,
+        m_flow_nominal_kg_h: float | None = None,
+        switch_at: float | None = None,
+        pulse_period_s: float | None = None,
+        pulse_period_min: float | None = None,
+        pulse_period_h: float | None = None,
+        pulse_period_d: float | None = None,
+        opening: float | None = None,
+        kappa: float | None = None,
+        initial_opening: float | None = None,
+        stroke_time_s: float | None = None,
+        stroke_time_min: float | None = None,
+        stroke_time_h: float | None = None,
+        stroke_time_d: float | None = None,
+        m_flow_nominal_kg_s: float | None = None,
+        m_flow_nominal_kg_min: float | None = None,
+    ) -> str:
+        """Adds `[[four_way_mixer]]`.
+
+        A control valve as written in a model file.
+
+        Parameters
+        ----------
+        id
+            Name; the ways are the edges `ID.supply`, `ID.return`, `ID.recirculation` and `ID.bypass`.
+        source_supply
+            Node from which the source's supply comes.
+        source_return
+            Node at which water goes back to the source.
+        load_supply
+            Node at which the mixed water goes to the load.
+        load_return
+            Node from which the load's return comes.
+        kvs_m3_h
+            Flow in m3/h at 1 bar when fully open.
+        characteristic
+            Flow coefficient over the stroke. One of linear, equal_percentage, quick_opening, table. Default:
+            equal_percentage.
+        rangeability
+            Ratio of largest to smallest controllable coefficient (equal percentage). Default: 50.0.
+        alpha
+            Root of the opening that the coefficient follows (quick opening). Default: 2.0.
+        table_opening
+            Openings of the table, rising from 0 to 1.
+        table_phi
+            Relative flow coefficients of the table without the leakage, rising from 0 to 1.
+        leakage
+            Coefficient of the closed valve over that of the open one; 0 is tight. Default: 0.001.
+        command
+            What the command means. One of opening, kappa. Default: opening.
         delta_m
-            Regularised below this share of the nominal flow. Default: 0.02. Also delta_km, delta_cm, delta_mm.
+            Regularised below this share of the nominal flow. Default: 0.02.
+        switch_at
+            Command from which on it opens fully, and below which it closes: a switching valve. Absent: it
+            takes any opening.
+        pulse_period_s
+            Period of a pulsing valve, s: it is open for the share of each period that its command has at the
+            beginning of the period, then closed. Absent: the command is an opening. Also pulse_period_min,
+            pulse_period_h, pulse_period_d.
+        opening
+            Opening commanded while nothing drives it. Not with `command = "kappa"`.
+        kappa
+            Relative flow coefficient commanded while nothing drives it, with `command = "kappa"`.
+        initial_opening
+            Opening at the start of a run. Absent: where the first command leads.
+        stroke_time_s
+            Time in which the stem follows a step by 99.6 %, s. Default: 35.0. Also stroke_time_min,
+            stroke_time_h, stroke_time_d.
+        m_flow_nominal_kg_s
+            Nominal flow for the regularisation, kg/s. Absent: flow at 0.1 bar when open. Also
+            m_flow_nominal_kg_h, m_flow_nominal_kg_min.
         """
     def interface(
         self,
@@ -8017,7 +8039,8 @@ class Grid:
         interpolation
             Between the rows. One of hold, linear. Default: hold.
         time_column
-            The column with the time: s since the start, or RFC 3339 with `[run] start`. Absent: the first.
+            The column with the time: s since the start, in another unit where its name says so (`time_h`,
+            `hour`), or RFC 3339 with `[run] start`. Absent: the first.
         separator
             Field separator. Default: ,.
         """
