@@ -1,23 +1,30 @@
 //! The model under the measured inputs: what every compared sensor should have read.
 //!
-//! Measured inputs drive their signals with what is behind their readings by the response of the sensor. A temperature of a step is its mean and
-//! belongs to its middle; the water of a run begins at the mean of the temperatures that are read first.
+//! Measured inputs drive their signals ([`crate::inputs`]). What is a mean over a step belongs to its middle, a state to its end
+//! ([`Moment`]); the water of a run begins at the mean of the temperatures that are read first.
 
 use crate::data::{Run, Track};
 use crate::error::ExplainError;
+use crate::inputs::Input;
 use crate::response::{Response, lagged};
-use crate::sensors::{Accuracy, Role, SensorFile};
+use crate::sensors::{Accuracy, Role, Sensor, SensorFile};
 use crate::unknown::{Target, Unknown};
 use anergy_core::clock::Time;
 use anergy_core::ids::ChannelId;
 use anergy_simulation::build::build;
+use anergy_simulation::channels::Moment;
 use anergy_simulation::effect::EffectSpec;
 use anergy_simulation::effects::EffectParams;
 use anergy_simulation::error::RunError;
-use anergy_simulation::model::{DriverSpec, Model, Place};
-use anergy_simulation::model_file::Interpolation;
+use anergy_simulation::model::{Model, Place};
 use anergy_simulation::simulation::Simulation;
 use serde_json::{Map, Value};
+
+/// Longest lag of an input over the shortest run.
+const LONGEST_LAG: f64 = 0.25;
+
+/// What stands in the names of temperatures that are none of water.
+const AIR: [&str; 6] = ["weather.", "ground", "soil", "room", "roof", "cellar"];
 
 /// A reading that is compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +52,8 @@ pub struct Experiment {
     pub accuracy: Vec<Accuracy>,
     /// Every compared reading, by run, sensor and time.
     pub samples: Vec<Sample>,
+    /// Smallest and largest value of the signal of every input.
+    pub(crate) ranges: Vec<(f64, f64)>,
     step: Time,
 }
 
@@ -55,6 +64,7 @@ impl Experiment {
     /// A signal or channel that the model does not have, a unit that does not fit, a model that does not build.
     pub fn new(model: Model, sensors: SensorFile, runs: Vec<Run>) -> Result<Self, ExplainError> {
         let plan = build(&model).map_err(ExplainError::Model)?;
+        let shortest_s = runs.iter().map(|r| r.span_s.1 - r.span_s.0).fold(f64::INFINITY, f64::min);
         for sensor in &sensors.sensor {
             let problem =
                 |problem: String| ExplainError::Sensor { column: sensor.column.clone(), problem };
@@ -83,6 +93,12 @@ impl Experiment {
                     .map_or(String::new(), |(known, _)| format!("; did you mean \"{known}\"?"));
                 return Err(problem(format!("the model has no {what} \"{name}\"{hint}")));
             };
+            if sensor.role == Role::Input && sensor.lag_s > LONGEST_LAG * shortest_s {
+                return Err(problem(format!(
+                    "lag_s = {} is more than a quarter of the shortest run, {shortest_s} s: what entered cannot be told from it",
+                    sensor.lag_s
+                )));
+            }
             let fits = *unit == si || (unit.is_empty() && si == "1");
             if !fits {
                 let (has, is) = (&sensor.unit, unit);
@@ -112,8 +128,14 @@ impl Experiment {
                 }
             }
         }
+        let range = |sensor: &Sensor| {
+            let signal = plan.signals().find(&sensor.signal).filter(|_| sensor.role == Role::Input);
+            let spec = signal.map(|signal| plan.signals().spec(signal));
+            spec.map_or((f64::NEG_INFINITY, f64::INFINITY), |spec| (spec.min, spec.max))
+        };
+        let ranges = sensors.sensor.iter().map(range).collect();
         let step = plan.step();
-        Ok(Self { model, sensors, runs, accuracy, samples, step })
+        Ok(Self { model, sensors, runs, accuracy, samples, ranges, step })
     }
 
     /// What the sensors should have read, with values for the unknowns.
@@ -160,18 +182,44 @@ impl Experiment {
 
     /// Whether another value of it needs another simulation.
     pub fn is_simulated(&self, target: &Target) -> bool {
-        target.sensor().is_none_or(|i| self.sensors.sensor[i].role == Role::Input)
+        let is_input = |i: usize| self.sensors.sensor[i].role == Role::Input;
+        match target {
+            Target::Logger(i) => {
+                (0..self.sensors.sensor.len()).any(|k| is_input(k) && self.share_clock(*i, k))
+            }
+            other => other.sensor().is_none_or(is_input),
+        }
     }
 
-    /// Mean of the temperatures that a run reads first, and how far they lie from it, K.
+    /// Whether two sensors have the same clock.
+    pub(crate) fn share_clock(&self, one: usize, other: usize) -> bool {
+        self.sensors.sensor[one].clock == self.sensors.sensor[other].clock
+    }
+
+    /// Mean of the temperatures of water that a run reads first, and how far they lie from it, K.
     pub fn first_k(&self, run: usize) -> Option<(f64, f64)> {
         let tracks = self.runs[run].tracks.iter().zip(&self.sensors.sensor);
-        let first =
-            tracks.filter(|(_, sensor)| sensor.si() == "k").map(|(track, _)| track.value[0]);
+        let first = tracks.filter(|(_, sensor)| self.is_of_water(sensor));
+        let first = first.map(|(track, _)| track.value[0]);
         let first: Vec<f64> = first.collect();
         let mean = first.iter().sum::<f64>() / first.len() as f64;
         let far = first.iter().fold(0.0_f64, |far, t| far.max((t - mean).abs()));
         (!first.is_empty()).then_some((mean, far))
+    }
+
+    /// Whether a sensor reads the temperature of water: not of air, rooms or ground.
+    fn is_of_water(&self, sensor: &Sensor) -> bool {
+        let name = &sensor.signal;
+        let of_node = || {
+            let node = name.strip_suffix(".temperature_k");
+            node.is_some_and(|node| self.model.nodes.iter().any(|n| n.entry.id == node))
+        };
+        let of_air = || AIR.iter().any(|word| name.contains(word)) || name.ends_with("_command");
+        sensor.si() == "k"
+            && match sensor.role {
+                Role::Input => of_node(),
+                Role::Compare => !of_air(),
+            }
     }
 
     fn with_effects(&self, unknowns: &[Unknown], at: &[f64]) -> Model {
@@ -211,31 +259,11 @@ impl Experiment {
         for (i, sensor) in self.sensors.sensor.iter().enumerate() {
             let track = &run.tracks[i];
             if sensor.role == Role::Input {
-                let response = self.response(i, unknowns, at);
-                let is_flow = ["kg_s", "m3_s"].contains(&sensor.si().as_str());
-                // A step takes its signals as they are at its end; of a measured quantity its middle counts.
-                let measured = |k: usize| {
-                    let time_s =
-                        begin_s + (k as f64 - 0.5).max(0.0) * step.as_s() - response.clock_s;
-                    let reading =
-                        if sensor.si() == "k" { track.smooth_at(time_s) } else { track.at(time_s) };
-                    // A flow meter that reads nothing has cut off a flow too small for it.
-                    if is_flow && reading == 0.0 {
-                        0.0
-                    } else {
-                        response.before(reading, time_s, run.span_s)
-                    }
-                };
+                let (range, response) = (self.ranges[i], &self.response(i, unknowns, at));
+                let noise = self.accuracy[i].noise;
+                let input = Input { sensor, track, response, range, noise };
                 model.drivers.retain(|driver| driver.signal != sensor.signal);
-                model.drivers.push(DriverSpec {
-                    signal: sensor.signal.as_str().into(),
-                    unit: None,
-                    interpolation: Interpolation::Linear,
-                    times_s: (0..=rows).map(|k| k as f64 * step.as_s()).collect(),
-                    values: (0..=rows).map(measured).collect(),
-                    source: sensor.column.as_str().into(),
-                    place: Place::default(),
-                });
+                model.drivers.push(input.driver(run.span_s, step, rows));
             }
         }
         if let Some((mean_k, _)) = self.first_k(index) {
@@ -248,22 +276,26 @@ impl Experiment {
         let plan = build(&model).map_err(ExplainError::Model)?;
         let mut simulation = Simulation::new(plan)?;
         let channels = self.sensors.sensor.iter().map(|sensor| match sensor.role {
-            Role::Compare => simulation.channel(&sensor.signal).map(Some),
+            Role::Compare => {
+                simulation.channel(&sensor.signal).map(|id| Some((id, simulation.moment(id))))
+            }
             Role::Input => Ok(None),
         });
-        let channels: Vec<Option<ChannelId>> = channels.collect::<Result<_, RunError>>()?;
+        let channels: Vec<Option<(ChannelId, Moment)>> =
+            channels.collect::<Result<_, RunError>>()?;
         let none = Track { time_s: Vec::new(), value: Vec::new() };
         let mut tracks = vec![none; channels.len()];
         for k in 0..=rows {
             if k > 0 {
                 simulation.advance_to(Time(step.0 * k as i64), step)?;
             }
-            for ((track, channel), sensor) in
-                tracks.iter_mut().zip(&channels).zip(&self.sensors.sensor)
-            {
-                let Some(channel) = channel else { continue };
-                let middle_s = if sensor.si() == "k" && k > 0 { 0.5 * step.as_s() } else { 0.0 };
-                track.time_s.push(begin_s + step.as_s() * k as f64 - middle_s);
+            for (track, channel) in tracks.iter_mut().zip(&channels) {
+                let Some((channel, moment)) = channel else { continue };
+                let ago_s = match moment {
+                    Moment::Middle if k > 0 => 0.5 * step.as_s(),
+                    _ => 0.0,
+                };
+                track.time_s.push(begin_s + step.as_s() * k as f64 - ago_s);
                 track.value.push(simulation.get(*channel));
             }
         }
@@ -279,7 +311,9 @@ impl Experiment {
             }
         }
         for (unknown, coordinate) in unknowns.iter().zip(at) {
-            if unknown.target.sensor() == Some(sensor) {
+            let of_logger =
+                matches!(unknown.target, Target::Logger(i) if self.share_clock(i, sensor));
+            if of_logger || unknown.target.sensor() == Some(sensor) {
                 response.take(&unknown.target, unknown.value(*coordinate));
             }
         }

@@ -149,7 +149,13 @@ pub fn explain(
         return Ok(data_problem(problems));
     }
     let uses = split(experiment, split_file)?;
-    let before = experiment.readings(&[], &[])?;
+    let before = match experiment.readings(&[], &[]) {
+        Ok(before) => before,
+        Err(error) => match sanity::keeps_from_running(experiment) {
+            problems if problems.is_empty() => return Err(error),
+            problems => return Ok(data_problem(problems)),
+        },
+    };
     let sigma = uncertainties(experiment, &before)?;
     watch.lap("uncertainty");
     let problems = sanity::beside(experiment, &before, &sigma);

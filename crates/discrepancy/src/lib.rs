@@ -15,6 +15,7 @@ pub mod explain;
 pub mod find;
 pub mod fit;
 pub mod gap;
+mod inputs;
 pub mod noise;
 mod response;
 pub mod sanity;

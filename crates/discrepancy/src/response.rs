@@ -34,7 +34,7 @@ impl Response {
             Target::Bias(_) => self.bias += value,
             Target::Gain(_) => self.gain *= value,
             Target::Lag(_) => self.lag_s += value,
-            Target::Clock(_) => self.clock_s += value,
+            Target::Clock(_) | Target::Logger(_) => self.clock_s += value,
             Target::Drift(_) => self.drift += value,
             Target::Step(_) => self.step += value,
             Target::StepShare(_) => self.step_share = value,

@@ -1,9 +1,13 @@
 //! Data that cannot be what they claim to be, before anything is fitted to them.
 
-use crate::data::Run;
+use crate::data::{Run, Track};
 use crate::experiment::Experiment;
 use crate::sensors::Role;
 use crate::unknown::{Target, Unknown};
+
+mod clocks;
+mod exchanged;
+mod misfit;
 
 /// Fewest readings over those of the best column.
 const LEAST_SHARE: f64 = 0.1;
@@ -16,6 +20,11 @@ const HOTTEST_K: f64 = 480.0;
 const NEAR_FACTOR: f64 = 0.05;
 /// Another unit must reduce the squared residuals to this share.
 const FAR_BETTER: f64 = 0.2;
+/// An input may lie outside of the range of its signal by so many standard deviations of the noise, and of offset and gain.
+const NOISES: f64 = 5.0;
+const BIASES: f64 = 3.0;
+/// Misfit ([`misfit`]) that another unit may leave where the model does not run with this one.
+const RUNS: f64 = 3.0;
 /// Factors by which units are confused.
 const FACTORS: &[(f64, &str)] = &[
     (3.6, "a factor of 3.6 (m3/h and l/s, kWh and MJ)"),
@@ -38,7 +47,7 @@ pub fn of_data(experiment: &Experiment) -> Vec<String> {
     for run in &experiment.runs {
         let of = of_run(run);
         let most = run.tracks.iter().map(|track| track.value.len()).max().unwrap_or(0);
-        for (track, sensor) in run.tracks.iter().zip(sensors) {
+        for (k, (track, sensor)) in run.tracks.iter().zip(sensors).enumerate() {
             let column = &sensor.column;
             let count = track.value.len();
             if (count as f64) < LEAST_SHARE * most as f64 {
@@ -50,6 +59,7 @@ pub fn of_data(experiment: &Experiment) -> Vec<String> {
             if sensor.role == Role::Compare && count >= MANY && constant {
                 problems.push(format!("column \"{column}\"{of} never changes: a stuck sensor?"));
             }
+            problems.extend(outside(experiment, &of, k, track));
             let odd = |y: &&f64| !(COLDEST_K..=HOTTEST_K).contains(*y);
             if sensor.si() == "k"
                 && let Some(y) = track.value.iter().find(odd)
@@ -79,6 +89,23 @@ pub fn of_data(experiment: &Experiment) -> Vec<String> {
         }
     }
     problems
+}
+
+/// A reading of an input that its signal cannot have, by more than the accuracy of the sensor allows.
+fn outside(experiment: &Experiment, of: &str, k: usize, track: &Track) -> Option<String> {
+    let (sensor, accuracy) = (&experiment.sensors.sensor[k], experiment.accuracy[k]);
+    let (low, high) = experiment.ranges[k];
+    let allowed =
+        |y: f64| NOISES * accuracy.noise + BIASES * (accuracy.bias + accuracy.gain * y.abs());
+    let is_out = |y: &f64| *y < low - allowed(*y) || *y > high + allowed(*y);
+    let at = track.value.iter().position(is_out)?;
+    let (column, unit, signal) = (&sensor.column, &sensor.unit, &sensor.signal);
+    let [y, low, high] = [track.value[at], low, high].map(|y| sensor.of_si(y));
+    let time_s = track.time_s[at];
+    let hint = if high == 1.0 && (1.5..=100.0).contains(&y) { ": in percent?" } else { "" };
+    Some(format!(
+        "column \"{column}\"{of} reads {y} {unit} at {time_s} s, and {signal} lies between {low} and {high} {unit}{hint}"
+    ))
 }
 
 /// What is wrong with the data beside the simulation: units, signs, exchanged columns.
@@ -111,24 +138,33 @@ pub fn beside(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> Vec<S
         }
     }
     problems.extend(units_of_inputs(experiment, readings, sigma));
-    let misfit = |of_sensor: usize, as_sensor: usize| -> f64 {
-        let (own, other) = (of(of_sensor), of(as_sensor));
-        own.iter()
-            .zip(&other)
-            .map(|(&i, &j)| ((experiment.samples[j].value - readings[i]) / sigma[i]).powi(2))
-            .sum()
-    };
-    for i in 0..sensors.len() {
-        for j in 0..i {
-            let (a, b) = (of(i), of(j));
-            let alike = !a.is_empty() && a.len() == b.len() && sensors[i].si() == sensors[j].si();
-            if alike {
-                let (as_is, swapped) = (misfit(i, i) + misfit(j, j), misfit(i, j) + misfit(j, i));
-                if as_is > 10.0 * swapped && as_is > 10.0 * (a.len() + b.len()) as f64 {
-                    let (a, b) = (&sensors[j].column, &sensors[i].column);
-                    problems.push(format!("columns \"{a}\" and \"{b}\" seem to be exchanged"));
-                }
-            }
+    // What a unit explains needs no other explanation.
+    if problems.is_empty() {
+        problems.extend(exchanged::exchanged(experiment, readings));
+    }
+    if problems.is_empty() {
+        problems.extend(clocks::jumps(experiment, readings));
+    }
+    problems
+}
+
+/// Why the model does not run with its inputs: a unit with which it does, and fits.
+pub fn keeps_from_running(experiment: &Experiment) -> Vec<String> {
+    let mut problems = Vec::new();
+    for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
+        if sensor.role != Role::Input || sensor.si() == "k" {
+            continue;
+        }
+        let gain = [Unknown::plain(Target::Gain(i), 1.0, 1.0)];
+        let runs = |(factor, _): &&(f64, &str)| {
+            let readings = experiment.readings(&gain, &[*factor]);
+            readings.is_ok_and(|y| exchanged::misfit(experiment, &y) < RUNS)
+        };
+        if let Some((_, words)) = FACTORS.iter().find(runs) {
+            let column = &sensor.column;
+            problems.push(format!(
+                "the model does not run with column \"{column}\" as it is, and fits with {words}: check its unit"
+            ));
         }
     }
     problems
@@ -153,7 +189,7 @@ fn units_of_inputs(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> 
         let other = |(factor, _): &&(f64, &str)| {
             experiment.readings(&gain, &[*factor]).is_ok_and(|y| misfit(&y) < FAR_BETTER * as_is)
         };
-        if let Some((_, words)) = FACTORS.iter().filter(|(factor, _)| *factor > 0.0).find(other) {
+        if let Some((_, words)) = FACTORS.iter().find(other) {
             let column = &sensor.column;
             problems
                 .push(format!("column \"{column}\" fits far better with {words}: check its unit"));

@@ -17,6 +17,8 @@ pub enum Target {
     Lag(usize),
     /// The clock of a sensor is late by this time, s.
     Clock(usize),
+    /// The clock of a logger is late by this time, s: that of this sensor, and of all that share it.
+    Logger(usize),
     /// A sensor drifts by this from the beginning of a run to its end, SI.
     Drift(usize),
     /// The readings of a sensor jump by this within a run, SI.
@@ -47,7 +49,7 @@ impl Target {
             | Self::Drift(i)
             | Self::Step(i)
             | Self::StepShare(i) => Some(*i),
-            Self::Initial(_) | Self::Effect { .. } => None,
+            Self::Logger(_) | Self::Initial(_) | Self::Effect { .. } => None,
         }
     }
 }
@@ -62,6 +64,7 @@ impl fmt::Display for Target {
             Self::Gain(i) => of_sensor(f, "gain", i),
             Self::Lag(i) => of_sensor(f, "lag", i),
             Self::Clock(i) => of_sensor(f, "clock", i),
+            Self::Logger(i) => of_sensor(f, "logger", i),
             Self::Drift(i) => of_sensor(f, "drift", i),
             Self::Step(i) => of_sensor(f, "jump", i),
             Self::StepShare(i) => of_sensor(f, "moment of the jump", i),

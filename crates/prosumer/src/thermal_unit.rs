@@ -67,12 +67,19 @@ pub struct UnitOutput {
     pub name: Cow<'static, str>,
     /// UDUNITS unit.
     pub unit: &'static str,
+    /// Whether it is a state at the end of the step; else it is the mean over it. What is counted (J, m3) is at its end anyway.
+    pub is_state: bool,
 }
 
 impl UnitOutput {
-    /// An output with a fixed name.
+    /// An output with a fixed name, the mean over a step.
     pub const fn new(name: &'static str, unit: &'static str) -> Self {
-        Self { name: Cow::Borrowed(name), unit }
+        Self { name: Cow::Borrowed(name), unit, is_state: false }
+    }
+
+    /// A state at the end of a step.
+    pub const fn state(name: &'static str, unit: &'static str) -> Self {
+        Self { name: Cow::Borrowed(name), unit, is_state: true }
     }
 }
 

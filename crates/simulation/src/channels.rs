@@ -1,6 +1,7 @@
 //! What can be recorded and measured: every quantity of every component by name.
 
 mod control;
+mod moment;
 mod units;
 
 use crate::plan::Plan;
@@ -13,6 +14,8 @@ use anergy_core::recorder::{Channel, ChannelGroup};
 use anergy_network::elements::Element;
 use anergy_network::graph::Coupling;
 pub(crate) use control::{add_controller, add_sensors};
+pub use moment::Moment;
+pub(crate) use moment::moment;
 
 /// Where the value of a channel comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]

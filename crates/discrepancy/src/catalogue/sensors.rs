@@ -9,16 +9,32 @@ use crate::unknown::{Target, Unknown};
 /// What the first readings may say too little of the water at the start, at least, K.
 const FIRST_K: f64 = 0.3;
 
-/// Tolerance of a clock, s: one interval, equally distributed, where it is not that of the inputs; else the jitter.
-fn clock_s(experiment: &Experiment, sensor: usize) -> f64 {
-    let own = &experiment.sensors.sensor[sensor].clock;
-    let mut inputs = experiment.sensors.sensor.iter().filter(|s| s.role == Role::Input);
-    let tracks = experiment.runs.iter().map(|run| &run.tracks[sensor]);
-    if inputs.any(|input| input.clock != *own) {
-        tracks.map(interval_s).fold(0.0, f64::max) / 3.0_f64.sqrt()
-    } else {
-        tracks.map(jitter_s).fold(0.0, f64::max)
+/// The sensors of every clock but that of the (first of the) inputs, to which all others are relative.
+fn loggers(experiment: &Experiment) -> Vec<Vec<usize>> {
+    let sensors = &experiment.sensors.sensor;
+    let reference = sensors.iter().find(|s| s.role == Role::Input).map(|s| s.clock.as_str());
+    let mut loggers: Vec<Vec<usize>> = Vec::new();
+    for (i, sensor) in sensors.iter().enumerate() {
+        if reference == Some(sensor.clock.as_str()) {
+            continue;
+        }
+        match loggers.iter_mut().find(|logger| experiment.share_clock(logger[0], i)) {
+            Some(logger) => logger.push(i),
+            None => loggers.push(vec![i]),
+        }
     }
+    loggers
+}
+
+/// Tolerance of a logger's clock, s: one interval, equally distributed.
+fn logger_s(experiment: &Experiment, logger: &[usize]) -> f64 {
+    let tracks = experiment.runs.iter().flat_map(|run| logger.iter().map(|&i| &run.tracks[i]));
+    tracks.map(interval_s).fold(0.0, f64::max) / 3.0_f64.sqrt()
+}
+
+/// Tolerance of the moment at which a sensor is read, s, beside that of its logger.
+fn moment_s(experiment: &Experiment, sensor: usize) -> f64 {
+    experiment.runs.iter().map(|run| jitter_s(&run.tracks[sensor])).fold(0.0, f64::max)
 }
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
@@ -30,8 +46,12 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
             all.push(Unknown::plain(Target::Gain(i), 1.0, accuracy.gain));
         }
         if experiment.sensors.sensor[i].role == Role::Compare {
-            all.push(Unknown::plain(Target::Clock(i), 0.0, clock_s(experiment, i)));
+            all.push(Unknown::plain(Target::Clock(i), 0.0, moment_s(experiment, i)));
         }
+    }
+    for logger in loggers(experiment) {
+        let sd = logger_s(experiment, &logger);
+        all.push(Unknown::plain(Target::Logger(logger[0]), 0.0, sd));
     }
     for run in 0..experiment.runs.len() {
         if let Some((_, far_k)) = experiment.first_k(run) {
@@ -41,6 +61,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
 }
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
+    let loggers = loggers(experiment);
     for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
         let accuracy = experiment.accuracy[i];
         let mut add = |id, words, parameter, unknown, tolerance, separates| {
@@ -76,6 +97,9 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             );
         }
         if sensor.role == Role::Compare {
+            let logger = loggers.iter().find(|logger| logger.contains(&i));
+            let of_logger = logger.map_or(0.0, |logger| logger_s(experiment, logger));
+            let clock_s = of_logger.hypot(moment_s(experiment, i));
             add(
                 "S4",
                 "slow sensor",
@@ -89,7 +113,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 "clock of the sensor",
                 ("clock_s", "s"),
                 Unknown::plain(Target::Clock(i), 0.0, 60.0 / 1.96),
-                Some((0.0, clock_s(experiment, i))),
+                Some((0.0, clock_s)),
                 "two flow rates: the shift of a clock is the same in both",
             );
         }

@@ -1,10 +1,36 @@
 //! Effects of houses: storages, generators, circuits that meet.
 
-use super::{Candidate, sensed};
+use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
 
-pub(super) fn tolerances(_: &Experiment, _: &mut Vec<Unknown>) {}
+/// Tolerance of the heat loss of a storage, relative.
+const LOSS: f64 = 0.08;
+/// Tolerance of an efficiency, relative.
+const EFFICIENCY: f64 = 0.02;
+
+pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
+    let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
+    for unit in &experiment.model.units {
+        let (component, kind) = (unit.id.as_str(), unit.params.kind());
+        let mut add = |id: &'static str, sd: f64| {
+            if !has(experiment, id, component) {
+                let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd);
+                all.push(Unknown { logarithmic: true, ..factor });
+            }
+        };
+        if kind == "storage" && warm {
+            add("T1", LOSS);
+        }
+        if power && is_generator(kind) {
+            add("G1", EFFICIENCY);
+        }
+    }
+}
+
+fn is_generator(kind: &str) -> bool {
+    BURNERS.contains(&kind) || kind == AIR_SOURCE
+}
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
@@ -14,7 +40,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
         if kind == "storage" && warm {
             of_storage(id, all);
         }
-        if power && (BURNERS.contains(&kind) || kind == AIR_SOURCE) {
+        if power && is_generator(kind) {
             of_generator(id, all);
         }
         if kind == AIR_SOURCE {
@@ -91,7 +117,8 @@ fn factor(
 
 fn of_storage(id: &str, all: &mut Vec<Candidate>) {
     let standby = "a day without flow, and the temperature of the room";
-    all.push(factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby));
+    let loss = factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby);
+    all.push(loss.tolerated(0.0, LOSS));
     let idle = "hours without flow";
     all.push(factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle));
     all.push(Candidate::effect(
@@ -114,7 +141,8 @@ fn of_storage(id: &str, all: &mut Vec<Candidate>) {
 
 fn of_generator(id: &str, all: &mut Vec<Candidate>) {
     let both = "meters on both sides of the energy";
-    all.push(factor("G1", id, "efficiency of the generator", (0.8, 1.2), both));
+    let level = factor("G1", id, "efficiency of the generator", (0.8, 1.2), both);
+    all.push(level.tolerated(0.0, EFFICIENCY));
     let part = |target| Unknown::between(target, 0.7, 1.3).starting_at(1.0);
     let load = Candidate::effect(
         "G2",

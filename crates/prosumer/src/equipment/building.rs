@@ -218,9 +218,9 @@ impl ThermalUnit for Building {
 
     fn outputs(&self) -> Vec<UnitOutput> {
         let mut outputs = vec![
-            UnitOutput::new("t_room_k", "K"),
-            UnitOutput::new("t_roof_k", "K"),
-            UnitOutput::new("t_cellar_k", "K"),
+            UnitOutput::state("t_room_k", "K"),
+            UnitOutput::state("t_roof_k", "K"),
+            UnitOutput::state("t_cellar_k", "K"),
             UnitOutput::new("set_k", "K"),
             UnitOutput::new("emitted_w", "W"),
             UnitOutput::new("loss_w", "W"),

@@ -246,7 +246,7 @@ impl ThermalUnit for Combustion {
         }
         if self.engine.is_some() {
             outputs.extend([
-                UnitOutput::new("t_engine_k", "K"),
+                UnitOutput::state("t_engine_k", "K"),
                 UnitOutput::new("loss_w", "W"),
                 UnitOutput::new("loss_j", "J"),
             ]);

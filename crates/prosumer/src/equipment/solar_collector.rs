@@ -190,7 +190,7 @@ impl ThermalUnit for SolarCollector {
     fn outputs(&self) -> Vec<UnitOutput> {
         vec![
             UnitOutput::new("q_flow_w", "W"),
-            UnitOutput::new("t_collector_k", "K"),
+            UnitOutput::state("t_collector_k", "K"),
             UnitOutput::new("irradiance_w_m2", "W m-2"),
             UnitOutput::new("efficiency", "1"),
             UnitOutput::new("pump", "1"),

@@ -1,7 +1,7 @@
 //! Reading and writing a simulation from outside: signals, channels, snapshots.
 
 use super::Simulation;
-use crate::channels;
+use crate::channels::{self, Moment};
 use crate::error::RunError;
 use crate::state::State;
 use anergy_core::ids::{ChannelId, SignalId};
@@ -62,6 +62,11 @@ impl Simulation {
         let names = || self.plan.channels().iter().map(|channel| channel.name.as_str());
         let index = names().position(|channel| channel == name);
         index.map(ChannelId::from_index).ok_or_else(|| unknown("channel", name, names()))
+    }
+
+    /// When within a step a channel has its value.
+    pub fn moment(&self, id: ChannelId) -> Moment {
+        channels::moment(&self.plan, self.plan.sources()[id.index()])
     }
 
     /// The present value of a channel, SI.

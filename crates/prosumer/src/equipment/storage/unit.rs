@@ -291,13 +291,15 @@ impl ThermalUnit for Storage {
 
     fn outputs(&self) -> Vec<UnitOutput> {
         let own = OWN_OUTPUTS.iter().map(|(name, unit)| UnitOutput::new(name, unit));
-        let layers = (1..=self.tank.layers.count)
-            .map(|layer| UnitOutput { name: format!("t_{layer}_k").into(), unit: "K" });
+        let layers = (1..=self.tank.layers.count).map(|layer| (format!("t_{layer}_k"), "K", true));
         let ports = self.names.iter().flat_map(|port| {
-            PORT_OUTPUTS
-                .map(|(name, unit)| UnitOutput { name: format!("{port}_{name}").into(), unit })
+            PORT_OUTPUTS.map(|(name, unit)| (format!("{port}_{name}"), unit, false))
         });
-        own.chain(layers).chain(ports).collect()
+        let named = |(name, unit, is_state): (String, _, _)| {
+            let name = name.into();
+            UnitOutput { name, unit, is_state }
+        };
+        own.chain(layers.chain(ports).map(named)).collect()
     }
 
     fn initial_state(&self, initial_k: f64) -> Vec<f64> {

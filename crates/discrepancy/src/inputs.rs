@@ -1,0 +1,177 @@
+//! Measured inputs as what drives the model.
+//!
+//! **Equation** a step takes the quantity behind the readings at its middle: `x = y + lag dy/dt` behind a first-order lag, then
+//! the response of the sensor backwards ([`Response`]), within the range of the signal. The slope is that of a straight line through
+//! the readings within half a lag (at least those beside): what entered is known no more sharply than that, and its noise grows
+//! by about `sqrt(1 + 12 interval/lag)`, at most 2.6 times.
+//!
+//! **Validity** a flow that never reads below zero stays there; what a reading cannot have been (a speed of -0.0001) is the end of
+//! the range. A command is off within five standard deviations of the lower end of its range; it is switched in the middle between two
+//! readings, as early as late.
+
+use crate::data::Track;
+use crate::response::Response;
+use crate::sensors::Sensor;
+use anergy_core::clock::Time;
+use anergy_simulation::model::{DriverSpec, Place};
+use anergy_simulation::model_file::Interpolation;
+
+/// Two readings further apart than this, in usual intervals, are not neighbours.
+const APART: f64 = 2.5;
+/// A command is off so many standard deviations of its noise above the lower end of its range.
+const OFF: f64 = 5.0;
+
+/// A measured input.
+pub(crate) struct Input<'a> {
+    /// Its sensor.
+    pub sensor: &'a Sensor,
+    /// Its readings, SI.
+    pub track: &'a Track,
+    /// What the sensor makes of its quantity.
+    pub response: &'a Response,
+    /// Smallest and largest value of the signal.
+    pub range: (f64, f64),
+    /// Standard deviation of the noise of a reading, SI.
+    pub noise: f64,
+}
+
+impl Input<'_> {
+    /// What drives the signal in so many steps of a run.
+    pub(crate) fn driver(&self, span_s: (f64, f64), step: Time, rows: usize) -> DriverSpec {
+        let (sensor, response) = (self.sensor, self.response);
+        let is_flow = ["kg_s", "m3_s"].contains(&sensor.si().as_str());
+        let mut ahead = before_lag(self.track, sensor.lag_s + response.lag_s);
+        if is_flow && self.track.value.iter().all(|y| *y >= 0.0) {
+            ahead.value.iter_mut().for_each(|y| *y = y.max(0.0));
+        }
+        let smooth = sensor.si() == "k";
+        let measured = |k: usize| {
+            let time_s = span_s.0 + (k as f64 - 0.5).max(0.0) * step.as_s() - response.clock_s;
+            let reading = if smooth {
+                ahead.smooth_at(time_s)
+            } else if sensor.si() == "1" {
+                self.command(&ahead, time_s)
+            } else {
+                ahead.at(time_s)
+            };
+            // A flow meter that reads nothing has cut off a flow too small for it.
+            if is_flow && self.track.at(time_s) == 0.0 {
+                0.0
+            } else {
+                response.before(reading, time_s, span_s).clamp(self.range.0, self.range.1)
+            }
+        };
+        DriverSpec {
+            signal: sensor.signal.as_str().into(),
+            unit: None,
+            interpolation: Interpolation::Linear,
+            times_s: (0..=rows).map(|k| k as f64 * step.as_s()).collect(),
+            values: (0..=rows).map(measured).collect(),
+            source: sensor.column.as_str().into(),
+            place: Place::default(),
+        }
+    }
+
+    /// A command at a time: linear, but at one moment from off to on.
+    fn command(&self, track: &Track, time_s: f64) -> f64 {
+        let (t, y) = (&track.time_s, &track.value);
+        let i = t.partition_point(|t| *t <= time_s);
+        let is_off = |y: f64| y < self.range.0 + OFF * self.noise;
+        let reading = track.at(time_s);
+        if i > 0 && i < t.len() && is_off(y[i - 1]) != is_off(y[i]) {
+            return if 2.0 * time_s < t[i - 1] + t[i] { y[i - 1] } else { y[i] };
+        }
+        if is_off(reading) { self.range.0 } else { reading }
+    }
+}
+
+/// The quantity in front of a first-order lag.
+fn before_lag(track: &Track, lag_s: f64) -> Track {
+    let (t, y) = (&track.time_s, &track.value);
+    if lag_s <= 0.0 || t.len() < 2 {
+        return track.clone();
+    }
+    let usual_s = crate::uncertainty::interval_s(track);
+    let (mut first, mut last) = (0, 0);
+    let one = |i: usize| {
+        // Readings within half a lag, and those beside, but none beyond a gap.
+        while t[first] < t[i] - 0.5 * lag_s {
+            first += 1;
+        }
+        while last + 1 < t.len() && t[last + 1] <= t[i] + 0.5 * lag_s {
+            last += 1;
+        }
+        let (mut from, mut until) = (i, i);
+        while from > 0 && from > first.min(i - 1) && t[from] - t[from - 1] < APART * usual_s {
+            from -= 1;
+        }
+        while until + 1 < t.len()
+            && until < last.max(i + 1)
+            && t[until + 1] - t[until] < APART * usual_s
+        {
+            until += 1;
+        }
+        y[i] + lag_s * slope(&t[from..=until], &y[from..=until])
+    };
+    let value = (0..t.len()).map(one).collect();
+    Track { time_s: t.clone(), value }
+}
+
+/// Slope of the straight line through some points; none where there is but one.
+fn slope(t: &[f64], y: &[f64]) -> f64 {
+    let n = t.len() as f64;
+    let (middle, mean) = (t.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let along: f64 = t.iter().zip(y).map(|(t, y)| (t - middle) * (y - mean)).sum();
+    let size: f64 = t.iter().map(|t| (t - middle).powi(2)).sum();
+    if size > 0.0 { along / size } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::lagged;
+    use crate::sensors::SensorFile;
+
+    fn track(n: i32, value: impl Fn(f64) -> f64) -> Track {
+        let time_s: Vec<f64> = (0..n).map(f64::from).collect();
+        Track { value: time_s.iter().map(|t| value(*t)).collect(), time_s }
+    }
+
+    #[test]
+    fn what_entered_is_found_in_front_of_a_lag() {
+        // A ramp of 1 K/s behind 10 s lies 10 K behind once exp(-t/10) is gone; in front of it it is back.
+        let behind = lagged(&track(200, |t| t), 10.0);
+        assert!((behind.value[150] - 140.0).abs() < 1e-3);
+        let ahead = before_lag(&behind, 10.0);
+        assert!((ahead.value[150] - 150.0).abs() < 1e-3, "{}", ahead.value[150]);
+        // A step: 10 s later the lagged one has 63 %; in front of the lag it has all of it, blurred by half a lag.
+        let behind = lagged(&track(200, |t| if t < 100.0 { 0.0 } else { 1.0 }), 10.0);
+        let ahead = before_lag(&behind, 10.0);
+        assert!((behind.value[109] - 0.63).abs() < 0.03, "{}", behind.value[109]);
+        assert!(ahead.value[94].abs() < 1e-9 && (ahead.value[106] - 1.0).abs() < 0.02);
+        assert_eq!(before_lag(&behind, 0.0), behind);
+    }
+
+    #[test]
+    fn a_gap_gives_no_slope() {
+        let mut gap = track(100, |t| if t < 50.0 { 0.0 } else { 100.0 });
+        gap.time_s.iter_mut().skip(50).for_each(|t| *t += 100.0);
+        assert_eq!(before_lag(&gap, 20.0), gap);
+    }
+
+    #[test]
+    fn inputs_stay_within_the_range_of_their_signal() {
+        let text = "[[sensor]]\ncolumn = \"n\"\nsignal = \"p.speed\"\nunit = \"1\"\nrole = \"input\"\n\
+                    [[sensor]]\ncolumn = \"T\"\nsignal = \"b.t_k\"\nunit = \"degC\"\nrole = \"compare\"\n";
+        let file = SensorFile::from_toml(text).unwrap();
+        let noisy = track(10, |t| if t < 5.0 { -0.000_125 } else { 1.000_3 });
+        let response = Response::default();
+        let (sensor, track, range) = (&file.sensor[0], &noisy, (0.0, 1.0));
+        let input = Input { sensor, track, response: &response, range, noise: 1e-3 };
+        let driver = input.driver((0.0, 9.0), Time::from_s(1.0).unwrap(), 9);
+        assert_eq!((driver.values[1], driver.values[9]), (0.0, 1.0));
+        // From off to on between 4 and 5 s: at one moment.
+        let halves = input.driver((0.0, 9.0), Time::from_s(0.25).unwrap(), 36);
+        assert!(halves.values.iter().all(|v| [0.0, 1.0].contains(v)), "{:?}", halves.values);
+    }
+}
