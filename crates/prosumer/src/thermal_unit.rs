@@ -101,6 +101,12 @@ pub trait ThermalUnit {
         vec![UnitPort::ONLY]
     }
 
+    /// Whether the unit takes heat out of what passes a port at positive flow: behind a station that is water from the
+    /// hot line to the cold one, against the direction of feed-in.
+    fn takes_heat(&self, _port: usize) -> bool {
+        false
+    }
+
     /// The input signals, in the order [`Signals`] presents them.
     fn inputs(&self) -> Vec<UnitInput>;
 

@@ -186,6 +186,10 @@ impl ThermalUnit for Building {
         heating.into_iter().chain(cooling).collect()
     }
 
+    fn takes_heat(&self, port: usize) -> bool {
+        self.params.heating && port == 0
+    }
+
     fn inputs(&self) -> Vec<UnitInput> {
         let input = |name, unit, initial, (min, max), follows| UnitInput {
             name,

@@ -163,6 +163,11 @@ impl DomesticHotWater {
                     flow_w_k += part * w_k;
                     heat_w += part * w;
                 }
+                if able <= 0.0 {
+                    // What keeps the circulation warm draws on until warm water comes.
+                    let asked_w_k = p.circulation_loss_w * runs / CIRCULATION_K;
+                    flow_w_k = flow_w_k.max(asked_w_k.min(self.exchanger.most_w_k));
+                }
                 if state[OWED_J].abs() > LEAST_J && arrives_k > cold_k + CIRCULATION_K {
                     // The pump gives no more than it can; the rest stays owed.
                     let most_w = self.exchanger.most_w_k * (arrives_k - cold_k);
@@ -199,6 +204,10 @@ impl DomesticHotWater {
 impl ThermalUnit for DomesticHotWater {
     fn ports(&self) -> Vec<UnitPort> {
         vec![UnitPort { name: "water".into(), sets_flow: true, leads: false }]
+    }
+
+    fn takes_heat(&self, _port: usize) -> bool {
+        true
     }
 
     fn inputs(&self) -> Vec<UnitInput> {

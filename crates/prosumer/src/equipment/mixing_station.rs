@@ -192,6 +192,10 @@ impl ThermalUnit for MixingStation {
         ]
     }
 
+    fn takes_heat(&self, port: usize) -> bool {
+        port == 0
+    }
+
     fn inputs(&self) -> Vec<UnitInput> {
         let p = &self.params;
         let (name, initial, follows) = match p.set_by {

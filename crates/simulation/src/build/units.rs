@@ -163,9 +163,12 @@ impl Builder<'_> {
                 let hint = "give the site a second station, or one of the units another one";
                 self.report(message, spec.place.span.range(), Some(hint.into()));
             }
-            let sets_flow = houses.ports[unit][slot - houses.slots[unit].start].sets_flow;
+            let port = slot - houses.slots[unit].start;
+            let sets_flow = houses.ports[unit][port].sets_flow;
             self.check_carrier(spec, sets_flow, edge);
-            houses.grid_ports.push(GridPort { unit, slot, imposes_flow: None });
+            let takes = houses.equipment[unit].as_ref().is_some_and(|unit| unit.takes_heat(port));
+            let direction = if takes { -1.0 } else { 1.0 };
+            houses.grid_ports.push(GridPort { unit, slot, direction, imposes_flow: None });
             houses.edges.push(EdgeId::from_index(edge));
         }
     }

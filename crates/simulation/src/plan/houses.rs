@@ -40,6 +40,8 @@ impl PlannedUnit {
 pub(crate) struct GridPort {
     pub unit: usize,
     pub slot: usize,
+    /// 1, or -1 where a positive flow of the unit goes against the direction of the edge.
+    pub direction: f64,
     /// The command of its edge, where its request is that edge's flow (and not its own circulation).
     pub imposes_flow: Option<SignalId>,
 }

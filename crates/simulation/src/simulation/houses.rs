@@ -47,7 +47,8 @@ impl Simulation {
         }
         let (plan, state) = (&self.plan, &mut self.state);
         for (port, place) in plan.grid_ports.iter().enumerate() {
-            let wanted = self.wanted[place.slot];
+            let mut wanted = self.wanted[place.slot];
+            wanted.m_flow_kg_s *= place.direction;
             state.network.requests[port] = wanted;
             if let Some(command) = place.imposes_flow {
                 state.signals[command.index()] = wanted.m_flow_kg_s;
@@ -128,7 +129,9 @@ impl Simulation {
     /// Units hear what the network gave, circuits go round, and units advance.
     pub(super) fn advance_units(&mut self, dt_s: f64) -> Result<(), RunError> {
         for (port, place) in self.plan.grid_ports.iter().enumerate() {
-            self.state.unit_ports[place.slot] = self.state.network.port_flows[port];
+            let mut got = self.state.network.port_flows[port];
+            got.m_flow_kg_s *= place.direction;
+            self.state.unit_ports[place.slot] = got;
         }
         for port in 0..self.plan.grid_ports.len() {
             let place = self.plan.grid_ports[port];

@@ -24,8 +24,12 @@ impl Exchanger {
     /// Capacity flow of the pump, W/K, and heat, W, for water of `flow_w_k` from `inlet_k` to `set_k`.
     pub fn serve(&self, flow_w_k: f64, inlet_k: f64, set_k: f64, arrives_k: f64) -> (f64, f64) {
         let wanted_w = flow_w_k * (set_k - inlet_k);
-        if wanted_w <= 0.0 || arrives_k <= inlet_k {
+        if wanted_w <= 0.0 {
             return (0.0, 0.0);
+        }
+        if arrives_k <= inlet_k {
+            // The pump draws until warm water comes; a supply that has cooled down would never be flushed otherwise.
+            return (self.most_w_k, 0.0);
         }
         let hot_end_k = arrives_k - set_k;
         if hot_end_k > LEAST_K {
@@ -101,6 +105,8 @@ mod tests {
             assert!(flow_w_k == exchanger.most_w_k && heat_w < 48_766.0);
             assert!(283.15 + heat_w / (4180.0 / 3.0) < arrives_k);
         }
-        assert_eq!(exchanger.serve(1000.0, 283.15, 318.15, 280.0), (0.0, 0.0));
+        // Water that is colder than that of the taps gives nothing, and is drawn until warm water comes.
+        assert_eq!(exchanger.serve(1000.0, 283.15, 318.15, 280.0), (exchanger.most_w_k, 0.0));
+        assert_eq!(exchanger.serve(0.0, 283.15, 318.15, 280.0), (0.0, 0.0));
     }
 }

@@ -102,6 +102,7 @@ impl ModelReader<'_> {
             self.reader.report(Diagnostic::new(message, unit.span.range()).with_hint(hint));
             return Some(tree);
         }
+        let is_named = unit.get("name").is_some();
         let mut add = |name: &str, value: Tree| {
             let key = Key { name: name.into(), span: value.span };
             if let TreeKind::Table(entries) = &mut unit.kind {
@@ -114,8 +115,10 @@ impl ModelReader<'_> {
         }
         if let Some(name) = tree.get("name").filter(|_| tree.text("name") != Some("station")) {
             add("station", name.clone());
-            let own = format!("{}.unit", tree.text("name").unwrap_or_default());
-            add("name", Tree::from_json(&Value::from(own), name.span));
+            if !is_named {
+                let own = format!("{}.unit", tree.text("name").unwrap_or_default());
+                add("name", Tree::from_json(&Value::from(own), name.span));
+            }
         }
         self.rows.entry("unit").or_default().push(unit);
         Some(tree)
