@@ -279,6 +279,40 @@ fn a_house_goes_on_from_a_snapshot_and_allocates_nothing() {
 }
 
 #[test]
+fn the_phases_of_the_connection_are_those_of_its_units() {
+    let house = (AROUND.to_owned() + HOUSE)
+        .replace("kind = \"pv\"", "kind = \"pv\"\nphase = 2")
+        .replace("kind = \"household\"", "kind = \"household\"\nphases = \"random\"");
+    let mut simulation = simulation(&house);
+    let mut largest_w = 0.0_f64;
+    for _ in 0..24 * 60 {
+        advance(&mut simulation, 60.0, 60.0);
+        let of = |name: &str| get(&simulation, &format!("h.{name}"));
+        let phases = [1, 2, 3].map(|phase| of(&format!("grid.phase_{phase}_w")));
+        let grid_w = of("grid.grid_w");
+        // Battery, car and pumps are of three phases.
+        let rest_w = (grid_w - of("household.electric_w") - of("roof.electric_w")) / 3.0;
+        for (i, phase_w) in phases.iter().enumerate() {
+            let roof_w = if i == 1 { of("roof.electric_w") } else { 0.0 };
+            let own_w = of(&format!("household.phase_{}_w", i + 1)) + roof_w + rest_w;
+            assert!(
+                (phase_w - own_w).abs() < 1e-9 * (1.0 + grid_w.abs()),
+                "{phases:?} {i} {own_w}"
+            );
+        }
+        assert!((phases.iter().sum::<f64>() - grid_w).abs() < 1e-9 * (1.0 + grid_w.abs()));
+        let spread_w = phases.iter().fold(f64::MIN, |m, w| m.max(*w))
+            - phases.iter().fold(f64::MAX, |m, w| m.min(*w));
+        assert!((of("grid.asymmetry_w") - spread_w).abs() < 1e-9);
+        largest_w = largest_w.max(spread_w);
+    }
+    // The roof of 10 kW stands on one phase.
+    assert!((get(&simulation, "h.grid.largest_asymmetry_w") - largest_w).abs() < 1e-9);
+    let too_far = simulation.take_events().filter(|event| event.kind == "asymmetric").count();
+    assert!((largest_w > 4600.0) == (too_far > 0), "{largest_w} W, {too_far} events");
+}
+
+#[test]
 fn the_rod_takes_the_surplus_of_the_roof() {
     let house = (AROUND.to_owned() + HOUSE)
         .replace("[[unit]]\nsite = \"h\"\nname = \"battery\"\nkind = \"battery\"\n", "");

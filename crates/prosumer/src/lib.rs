@@ -13,4 +13,5 @@ pub mod ground_source;
 pub mod heat_pump;
 pub mod hot_water_draws;
 pub mod performance_map;
+mod phases;
 pub mod thermal_unit;

@@ -10,6 +10,7 @@
 //!
 //! **Sources** values assumed (`docs/src/generators.md`).
 
+use crate::phases;
 use crate::thermal_unit::{
     Exchange, SITE_ELECTRICITY, ThermalUnit, UnitError, UnitInput, UnitOutput, UnitPort,
     not_negative, positive, share,
@@ -59,6 +60,9 @@ pub struct BatteryParams {
     pub soc_max: f64,
     /// State of charge at the start.
     pub initial_soc: f64,
+    /// Phase of the grid on which its inverter stands, 1 to 3; three phases alike without this.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<u32>,
 }
 
 impl Default for BatteryParams {
@@ -76,6 +80,7 @@ impl Default for BatteryParams {
             soc_min: 0.05,
             soc_max: 1.0,
             initial_soc: 0.5,
+            phase: None,
         }
     }
 }
@@ -137,6 +142,7 @@ impl BatteryParams {
                 return Err(UnitError::OutOfRange { field, value, requirement });
             }
         }
+        phases::check(self.phase)?;
         Ok(Battery { params: self.clone() })
     }
 }
@@ -180,7 +186,7 @@ impl ThermalUnit for Battery {
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {
-        vec![
+        let own = [
             UnitOutput::new("electric_w", "W"),
             UnitOutput::new("soc", "1"),
             UnitOutput::new("energy_j", "J"),
@@ -189,7 +195,10 @@ impl ThermalUnit for Battery {
             UnitOutput::new("discharged_j", "J"),
             UnitOutput::new("lost_j", "J"),
             UnitOutput::new("full_cycles", "1"),
-        ]
+        ];
+        own.into_iter()
+            .chain(self.params.phase.into_iter().flat_map(|_| phases::outputs()))
+            .collect()
     }
 
     fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
@@ -236,7 +245,9 @@ impl ThermalUnit for Battery {
         state[DISCHARGED_J] += dt_s * (-power_w).max(0.0);
         state[TAKEN_OUT_J] += dt_s * out_w;
         state[LOST_J] += dt_s * loss_w;
-        out.copy_from_slice(&[
+        let (own, phases) = out.split_at_mut(8);
+        phases::write(p.phase, power_w, phases);
+        own.copy_from_slice(&[
             power_w,
             state[ENERGY_J] / p.capacity_j,
             state[ENERGY_J],

@@ -7,6 +7,7 @@
 //! the date only: means over a step are exact. **Sources** power of a wall box; times assumed.
 
 use crate::calendar::{DAY_S, Moment, normal};
+use crate::phases;
 use crate::thermal_unit::{
     Exchange, START_UNIX, ThermalUnit, UnitError, UnitInput, UnitOutput, UnitPort, not_negative,
     positive,
@@ -23,11 +24,14 @@ use serde::{Deserialize, Serialize};
 pub struct ElectricLoadParams {
     /// Power while nothing drives it, W.
     pub power_w: f64,
+    /// Phase of the grid on which it stands, 1 to 3; three phases alike without this.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<u32>,
 }
 
 impl Default for ElectricLoadParams {
     fn default() -> Self {
-        Self { power_w: 0.0 }
+        Self { power_w: 0.0, phase: None }
     }
 }
 
@@ -37,6 +41,9 @@ impl Default for ElectricLoadParams {
 pub struct ElectricVehicleParams {
     /// Power while it charges, W.
     pub charging_w: f64,
+    /// Phase of the grid on which it charges, 1 to 3; three phases alike without this.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<u32>,
     /// Energy of a day, J.
     pub daily_j: f64,
     /// Mean time of day at which charging begins, s.
@@ -53,6 +60,7 @@ impl Default for ElectricVehicleParams {
     fn default() -> Self {
         Self {
             charging_w: 11_000.0,
+            phase: None,
             daily_j: 8.0 * 3.6e6,
             arrival_s: 18.0 * 3600.0,
             arrival_deviation_s: 3600.0,
@@ -78,6 +86,7 @@ impl ElectricLoadParams {
     /// Names the field that is out of range.
     pub fn build(&self, _medium: &Medium) -> Result<ElectricLoad, UnitError> {
         not_negative("power_w", self.power_w)?;
+        phases::check(self.phase)?;
         Ok(ElectricLoad::Driven(self.clone()))
     }
 }
@@ -89,6 +98,7 @@ impl ElectricVehicleParams {
     /// Names the field that is out of range.
     pub fn build(&self, _medium: &Medium) -> Result<ElectricLoad, UnitError> {
         positive("charging_w", self.charging_w)?;
+        phases::check(self.phase)?;
         for (field, value) in [
             ("daily_j", self.daily_j),
             ("arrival_s", self.arrival_s),
@@ -132,6 +142,15 @@ impl ElectricVehicleParams {
     }
 }
 
+impl ElectricLoad {
+    fn phase(&self) -> Option<u32> {
+        match self {
+            Self::Driven(params) => params.phase,
+            Self::Vehicle(params) => params.phase,
+        }
+    }
+}
+
 impl ThermalUnit for ElectricLoad {
     fn ports(&self) -> Vec<UnitPort> {
         Vec::new()
@@ -146,7 +165,8 @@ impl ThermalUnit for ElectricLoad {
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {
-        vec![UnitOutput::new("electric_w", "W"), UnitOutput::new("used_j", "J")]
+        let own = [UnitOutput::new("electric_w", "W"), UnitOutput::new("used_j", "J")];
+        own.into_iter().chain(self.phase().into_iter().flat_map(|_| phases::outputs())).collect()
     }
 
     fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
@@ -179,7 +199,9 @@ impl ThermalUnit for ElectricLoad {
         };
         state[0] += dt_s;
         state[1] += dt_s * electric_w;
-        out.copy_from_slice(&[electric_w, state[1]]);
+        let (own, phases) = out.split_at_mut(2);
+        own.copy_from_slice(&[electric_w, state[1]]);
+        phases::write(self.phase(), electric_w, phases);
         Exchange { electric_w, external_w: -electric_w }
     }
 }

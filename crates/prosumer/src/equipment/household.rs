@@ -6,12 +6,16 @@
 //! person leaves on a workday with a probability around 7:30 and comes back around 16:30, at weekends from 10:30 to
 //! 16:00.
 //!
+//! With `phases = "random"` the base is a third on each phase of the grid, and what is drawn besides in a quarter is spread by
+//! three exponentially distributed numbers: the phases add up to the whole.
+//!
 //! **Assumptions** quarters are independent; neither holidays nor long absences. **Validity** statistics of a
 //! household, not measurements of one. **Numerics** numbers of a seed and the date: means over a step do not depend on
 //! how time is cut into steps. **Sources** annual energy `zinsmeister2024`; the course follows the standard profile of
 //! households `bdew1999` in its shape, its numbers are assumed.
 
 use crate::calendar::{DAY_S, Moment, normal, season, uniform};
+use crate::phases::{self, PHASES};
 use crate::thermal_unit::{
     Exchange, START_UNIX, ThermalUnit, UnitError, UnitInput, UnitOutput, UnitPort, not_negative,
     share,
@@ -37,6 +41,17 @@ const WEEKEND: [f64; 24] = [
     1.6, 1.7, 1.6, 1.4, 1.1, 0.7,
 ];
 
+/// How the electricity of a household is spread over the three phases.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HouseholdPhases {
+    /// A third on each.
+    #[default]
+    Even,
+    /// What is always drawn evenly, the rest of each quarter of an hour by chance: devices of one phase.
+    Random,
+}
+
 /// The people of a house as written in a model file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -57,6 +72,8 @@ pub struct HouseholdParams {
     pub weekend_absence: f64,
     /// Share of the electricity that heats the rooms, output `appliances_w`. 0: the building counts it with its people.
     pub gain_share: f64,
+    /// How the electricity is spread over the three phases of the grid.
+    pub phases: HouseholdPhases,
     /// Local clock over UTC, s.
     pub utc_offset_s: f64,
 }
@@ -72,6 +89,7 @@ impl Default for HouseholdParams {
             workday_absence: 0.7,
             weekend_absence: 0.4,
             gain_share: 0.0,
+            phases: HouseholdPhases::Even,
             utc_offset_s: 3600.0,
         }
     }
@@ -88,8 +106,9 @@ const DAY: usize = 1;
 const WEIGHTS: usize = 2;
 const ELECTRIC_J: usize = 3;
 
-/// Indices of random numbers: quarters, then people.
+/// Indices of random numbers: quarters, then people, then phases.
 const PEOPLE: u64 = 1000;
+const ON_PHASES: u64 = 10_000;
 const MOST_PEOPLE: u32 = 1000;
 
 impl HouseholdParams {
@@ -163,9 +182,29 @@ impl Household {
         p.annual_j / 365.2425 * (1.0 + p.season_amplitude * season(day, DARKEST_DAY))
     }
 
-    /// Energy, J, and presence times time, s, of a stretch of time; `state` remembers the sum of the day.
-    fn stretch(&self, start_unix_s: f64, dt_s: f64, state: &mut [f64]) -> (f64, f64) {
+    /// Share of each phase in the energy of a quarter of this weight.
+    fn phase_shares(&self, day: i64, quarter: usize, weight: f64) -> [f64; PHASES] {
+        let p = &self.params;
+        let chance = |phase: usize| {
+            let index = ON_PHASES + (PHASES * quarter + phase) as u64;
+            -uniform(p.seed, day, index).ln()
+        };
+        let chances = [chance(0), chance(1), chance(2)];
+        let sum: f64 = chances.iter().sum();
+        let base = p.base_share / weight;
+        chances.map(|chance| base / PHASES as f64 + (1.0 - base) * chance / sum)
+    }
+
+    /// Energy, J, and presence times time, s, of a stretch of time, and the energy of each phase where they are told;
+    /// `state` remembers the sum of the day.
+    fn stretch(
+        &self,
+        start_unix_s: f64,
+        dt_s: f64,
+        state: &mut [f64],
+    ) -> (f64, f64, [f64; PHASES]) {
         let (mut energy_j, mut present_s, mut done_s) = (0.0, 0.0, 0.0);
+        let mut phases_j = [0.0; PHASES];
         // Each turn ends a quarter or the step.
         for _ in 0..2 + (dt_s / QUARTER_S) as usize {
             let elapsed_s = state[ELAPSED_S] + done_s;
@@ -180,14 +219,19 @@ impl Household {
             let (weight, presence) = self.weight(day, quarter);
             let left_s = ((quarter + 1) as f64 * QUARTER_S - time_s).max(1e-6);
             let piece_s = left_s.min(dt_s - done_s);
-            energy_j += self.day_j(day) * weight / state[WEIGHTS] * piece_s / QUARTER_S;
+            let piece_j = self.day_j(day) * weight / state[WEIGHTS] * piece_s / QUARTER_S;
+            energy_j += piece_j;
+            if self.params.phases == HouseholdPhases::Random {
+                let shares = self.phase_shares(day, quarter, weight);
+                phases_j.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share * piece_j);
+            }
             present_s += presence * piece_s;
             done_s += piece_s;
             if done_s >= dt_s {
                 break;
             }
         }
-        (energy_j, present_s)
+        (energy_j, present_s, phases_j)
     }
 }
 
@@ -208,12 +252,14 @@ impl ThermalUnit for Household {
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {
-        vec![
+        let own = [
             UnitOutput::new("electric_w", "W"),
             UnitOutput::new("presence", "1"),
             UnitOutput::new("appliances_w", "W"),
             UnitOutput::new("used_j", "J"),
-        ]
+        ];
+        let told = self.params.phases == HouseholdPhases::Random;
+        own.into_iter().chain(phases::outputs().filter(|_| told)).collect()
     }
 
     fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
@@ -239,12 +285,14 @@ impl ThermalUnit for Household {
     ) -> Exchange {
         // A step without length shows the next second.
         let span_s = if dt_s > 0.0 { dt_s } else { 1.0 };
-        let (energy_j, present_s) = self.stretch(signals.get(0), span_s, state);
+        let (energy_j, present_s, phases_j) = self.stretch(signals.get(0), span_s, state);
         let electric_w = energy_j / span_s;
         state[ELAPSED_S] += dt_s;
         state[ELECTRIC_J] += dt_s * electric_w;
         let gain_w = self.params.gain_share * electric_w;
-        out.copy_from_slice(&[electric_w, present_s / span_s, gain_w, state[ELECTRIC_J]]);
+        let (own, phases) = out.split_at_mut(4);
+        own.copy_from_slice(&[electric_w, present_s / span_s, gain_w, state[ELECTRIC_J]]);
+        phases.iter_mut().zip(phases_j).for_each(|(out, phase_j)| *out = phase_j / span_s);
         Exchange { electric_w, external_w: -electric_w }
     }
 }
@@ -301,5 +349,31 @@ mod tests {
             sum / n
         };
         assert!(mean(true) > 1.2 * mean(false), "{} {}", mean(true), mean(false));
+    }
+
+    #[test]
+    fn phases_add_up_and_differ() {
+        let even = HouseholdParams::default().build(&Medium::default()).unwrap();
+        let params =
+            HouseholdParams { phases: HouseholdPhases::Random, ..HouseholdParams::default() };
+        let unit = params.build(&Medium::default()).unwrap();
+        assert_eq!((even.outputs().len(), unit.outputs().len()), (4, 7));
+        let (mut state, mut sums_j) = (unit.initial_state(0.0), [0.0; PHASES]);
+        let mut apart = 0.0;
+        for _ in 0..364 * QUARTERS {
+            let mut out = [0.0; 7];
+            unit.advance(QUARTER_S, &Signals(&[START_S]), &[], &mut state, &mut out);
+            let phases = &out[4..];
+            assert!((phases.iter().sum::<f64>() - out[0]).abs() < 1e-9 * out[0]);
+            // 30 % of the weight is always there, a third of it on each.
+            assert!(phases.iter().all(|w| *w > 0.0));
+            sums_j.iter_mut().zip(phases).for_each(|(sum, w)| *sum += QUARTER_S * w);
+            let most = phases.iter().fold(0.0, |m: f64, w| m.max(*w));
+            apart += (most / out[0] - 1.0 / 3.0) / (364.0 * QUARTERS as f64);
+        }
+        // A third each in the long run; the largest of three exponential shares is 11/18 on average, times the 0.7 or so that
+        // are not the base: 1/3 + 0.6 (11/18 - 1/3) = 0.50.
+        assert!(sums_j.iter().all(|j| (j / sums_j.iter().sum::<f64>() - 1.0 / 3.0).abs() < 0.01));
+        assert!((0.12..0.22).contains(&apart), "{apart}");
     }
 }

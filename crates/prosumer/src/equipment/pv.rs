@@ -8,6 +8,7 @@
 //!
 //! **Sources** peak-power model and NOCT: `duffie2013`; values assumed (`docs/src/generators.md`).
 
+use crate::phases;
 use crate::thermal_unit::{
     Exchange, ThermalUnit, UnitError, UnitInput, UnitOutput, UnitPort, positive, share,
 };
@@ -94,6 +95,9 @@ pub struct PvParams {
     /// Largest power of the inverter, W.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inverter_w: Option<f64>,
+    /// Phase of the grid on which its inverter stands, 1 to 3; three phases alike without this.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<u32>,
     /// Outdoor temperature while neither weather nor anything else drives it, K.
     pub t_outdoor_k: f64,
 }
@@ -110,6 +114,7 @@ impl Default for PvParams {
             noct_k: 319.15,
             system_efficiency: 0.86,
             inverter_w: None,
+            phase: None,
             t_outdoor_k: 283.15,
         }
     }
@@ -134,6 +139,7 @@ impl PvParams {
         positive("t_outdoor_k", self.t_outdoor_k)?;
         share("albedo", self.albedo)?;
         share("system_efficiency", self.system_efficiency)?;
+        phases::check(self.phase)?;
         let most_w = positive("inverter_w", self.inverter_w.unwrap_or(f64::MAX))?;
         for (field, value) in [("tilt_rad", self.tilt_rad), ("azimuth_rad", self.azimuth_rad)] {
             if !value.is_finite() {
@@ -172,13 +178,16 @@ impl ThermalUnit for Pv {
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {
-        vec![
+        let own = [
             UnitOutput::new("electric_w", "W"),
             UnitOutput::new("generated_w", "W"),
             UnitOutput::new("irradiance_w_m2", "W m-2"),
             UnitOutput::new("t_cell_k", "K"),
             UnitOutput::new("generated_j", "J"),
-        ]
+        ];
+        own.into_iter()
+            .chain(self.params.phase.into_iter().flat_map(|_| phases::outputs()))
+            .collect()
     }
 
     fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
@@ -206,7 +215,9 @@ impl ThermalUnit for Pv {
             on_plane(&self.plane, self.params.sky.sky(), signals).total_w_m2().max(0.0);
         let (power_w, cell_k) = self.power_w(irradiance, signals.get(0));
         state[0] += dt_s * power_w;
-        out.copy_from_slice(&[-power_w, power_w, irradiance, cell_k, state[0]]);
+        let (own, phases) = out.split_at_mut(5);
+        own.copy_from_slice(&[-power_w, power_w, irradiance, cell_k, state[0]]);
+        phases::write(self.params.phase, -power_w, phases);
         Exchange { electric_w: -power_w, external_w: power_w }
     }
 }
