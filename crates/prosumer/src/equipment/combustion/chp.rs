@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 const MEASURED_W: f64 = 1900.0;
 /// Total efficiency of its fit at full load and a return of 35 degC.
 const FIT_TOTAL: f64 = 0.8665;
+/// Heat that it takes for itself when it starts cold, W.
+const WARM_UP_W: f64 = 1000.0;
 /// Length of its start from cold, s.
 const START_S: f64 = 825.0;
 
@@ -141,7 +143,9 @@ pub struct ChpParams {
     /// Standstill after which the engine is cold, s.
     pub cold_after_s: f64,
     /// Heat that the cold engine takes for itself when it starts, W per 1.9 kW of electricity; it ends in `warm_up_s`.
-    pub warm_up_w: f64,
+    /// 1000 W without this; nothing with a content, which takes that heat itself: what is given counts besides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warm_up_w: Option<f64>,
     /// Time in which the engine warms up, s.
     pub warm_up_s: f64,
     /// Efficiency over what the map says, at all loads.
@@ -193,7 +197,7 @@ impl Default for ChpParams {
             start_s: START_S,
             warm_start_s: 200.0,
             cold_after_s: 36_000.0,
-            warm_up_w: 1000.0,
+            warm_up_w: None,
             warm_up_s: 2400.0,
             efficiency_factor: 1.0,
             part_load_factor: Vec::new(),
@@ -249,7 +253,7 @@ impl ChpParams {
             ("restart_difference_k", self.restart_difference_k),
             ("run_min_s", self.run_min_s),
             ("off_min_s", self.off_min_s),
-            ("warm_up_w", self.warm_up_w),
+            ("warm_up_w", self.warm_up_w()),
             ("idle_w", self.idle_w),
             ("content_j_k", self.content_j_k),
             ("content_loss_w_k", self.content_loss_w_k),
@@ -278,7 +282,7 @@ impl ChpParams {
             warm_within_s: self.cold_after_s,
             warm_scale: self.warm_start_s / self.start_s,
             warm_up: WarmUp {
-                heat_w: size * self.warm_up_w,
+                heat_w: size * self.warm_up_w(),
                 lasts_s: self.warm_up_s,
                 cold_after_s: self.cold_after_s,
             },
@@ -322,6 +326,12 @@ impl ChpParams {
             ],
             medium: *medium,
         })
+    }
+
+    /// Heat that the cold engine takes for itself when it starts, W per 1.9 kW: that of the measured one unless its
+    /// content takes it.
+    pub fn warm_up_w(&self) -> f64 {
+        self.warm_up_w.unwrap_or(if self.content_j_k > 0.0 { 0.0 } else { WARM_UP_W })
     }
 
     /// Its size over that of the measured engine.

@@ -436,8 +436,8 @@ fn a_stirred_content_leaves_as_its_mean() {
 
 #[test]
 fn a_cold_engine_with_a_content_heats_itself_first() {
-    // 60 kJ/K from 20 to 82 degC are 3.72 MJ; the engine gives about 5.1 kW less 1 kW of its warm-up from 56 s on and
-    // loses up to 0.3 kW: some 950 s. The measured start: no heat before 724 s.
+    // 60 kJ/K from 20 to 82 degC are 3.72 MJ; the engine gives about 4.7 kW from 56 s on and
+    // loses up to 0.3 kW: some 870 s. The measured start: no heat before 724 s.
     let mut engine = Engine::new(&with_content());
     let mut first_s = 0.0;
     while engine.heat_j <= 0.0 {
@@ -490,4 +490,19 @@ fn an_idle_engine_gives_its_heat_to_water_that_passes() {
     (0..200).for_each(|_| engine.step(60.0, 0.05));
     assert!((engine.heat_j / 2.4e6 - 1.0).abs() < 1e-6, "{}", engine.heat_j);
     assert!(engine.out("t_engine_k") - 313.15 < 1e-6);
+}
+
+#[test]
+fn the_cold_start_of_an_engine_with_a_content_is_counted_once() {
+    assert_eq!(ChpParams::default().warm_up_w(), 1000.0);
+    assert_eq!(with_content().warm_up_w(), 0.0);
+    // What is given besides counts: 1 kW that falls to nothing in 2400 s, from ignition (56 s) on, are
+    // 1.2 MJ - 1000 (56 - 56^2/4800) = 1.1447 MJ less for water, content and surroundings.
+    let given_j = |warm_up_w| {
+        let mut engine = Engine::new(&ChpParams { warm_up_w, ..with_content() });
+        (0..720).for_each(|_| engine.step(5.0, 0.0));
+        engine.heat_j + engine.unit.stored_j(&engine.state) + engine.out("loss_j")
+    };
+    let less_j = given_j(None) - given_j(Some(1000.0));
+    assert!((less_j / 1.1447e6 - 1.0).abs() < 0.01, "{less_j}");
 }
