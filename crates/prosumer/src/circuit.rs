@@ -91,7 +91,7 @@ pub(crate) fn limit_at(outlet: &Outlet, t_k: f64, capacity_w_k: f64) -> Option<L
 }
 
 /// Heat into the water and the temperature that its outlet does not pass.
-fn bounded(outlet: &Outlet) -> Option<(f64, f64)> {
+pub(crate) fn bounded(outlet: &Outlet) -> Option<(f64, f64)> {
     match *outlet {
         Outlet::Cooled { wanted_w, coldest_k } => Some((-wanted_w, coldest_k)),
         Outlet::Warmed { wanted_w, hottest_k } => Some((wanted_w, hottest_k)),
@@ -105,7 +105,8 @@ impl Circuit {
         self.driver.map_or(0.0, |slot| wanted[slot].m_flow_kg_s.abs())
     }
 
-    /// The temperatures around the circuit with a flow; at zero flow what would arrive and leave first.
+    /// The temperatures around the circuit with a flow; at zero flow what would arrive and leave first. Whether the limits of
+    /// temperatures settled.
     ///
     /// # Errors
     /// [`Undefined`] when no member holds the temperature and heat is brought in.
@@ -115,7 +116,7 @@ impl Circuit {
         heat_capacity_j_kg_k: f64,
         wanted: &[PortRequest],
         got: &mut [PortFlow],
-    ) -> Result<(), Undefined> {
+    ) -> Result<bool, Undefined> {
         let capacity_w_k = m_flow_kg_s * heat_capacity_j_kg_k;
         let mut limits = Limits::default();
         let mut rounds = 3 * self.members.len();
@@ -146,7 +147,7 @@ impl Circuit {
                 t_k = t_out_k;
             }
             if next == limits || rounds == 0 {
-                return Ok(());
+                return Ok(next == limits);
             }
             limits = next;
             rounds -= 1;
@@ -165,7 +166,7 @@ mod tests {
         let wanted: Vec<PortRequest> =
             outlets.iter().map(|outlet| PortRequest { m_flow_kg_s: m, outlet: *outlet }).collect();
         let mut got = vec![PortFlow { t_in_k: 290.0, ..PortFlow::default() }; outlets.len()];
-        circuit.solve(circuit.m_flow_kg_s(&wanted), CP, &wanted, &mut got)?;
+        assert!(circuit.solve(circuit.m_flow_kg_s(&wanted), CP, &wanted, &mut got)?);
         let heat: f64 = got.iter().map(|got| m.abs() * CP * (got.t_out_k - got.t_in_k)).sum();
         assert!(heat.abs() < 1e-6, "{heat} W are left: {got:?}");
         Ok(got)

@@ -9,11 +9,12 @@
 //! ratios of the resistances count; the water in points and pipes has no volume. **Validity** branches
 //! without a pump connect all points: they take the differences. **Numerics** mass to rounding, heat exact: the
 //! matrix has no positive entry beside its diagonal and is eliminated without pivots; limits of temperatures are held by
-//! trying. Where no water comes to a point, it shows what would leave first.
+//! trying, and where that does not settle by following them (`limits`). Where no water comes to a point, it shows what would leave first.
 //!
 //! **Sources** `zinsmeister2022` (flow through generators that are off, and between those that are on).
 
 mod flows;
+mod limits;
 
 use crate::circuit::{LEAST_HOLD, Limit, Limits, Undefined, limit_at, relation};
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
@@ -86,7 +87,7 @@ fn passed(outlet: &Outlet, limit: Limit, m_flow_kg_s: f64, capacity_w_k: f64) ->
 }
 
 impl Coupling {
-    /// The temperatures of the points and around the branches with their flows.
+    /// The temperatures of the points and around the branches with their flows; whether the limits of temperatures settled.
     ///
     /// # Errors
     /// [`Undefined`] when nothing holds the temperature.
@@ -96,35 +97,53 @@ impl Coupling {
         heat_capacity_j_kg_k: f64,
         wanted: &[PortRequest],
         got: &mut [PortFlow],
-    ) -> Result<(), Undefined> {
+    ) -> Result<bool, Undefined> {
         let mut limits = Limits::default();
         let members: usize = self.branches.iter().map(|branch| branch.members.len()).sum();
-        let mut rounds = 3 * members;
-        loop {
-            let points_k = self.points_k(flows, heat_capacity_j_kg_k, wanted, got, limits)?;
-            let mut next = limits;
-            let mut member = 0;
-            for (branch, m_flow_kg_s) in self.branches.iter().zip(*flows) {
-                let capacity_w_k = m_flow_kg_s.abs() * heat_capacity_j_kg_k;
-                let mut t_k = points_k[branch.upstream(m_flow_kg_s)];
-                for slot in branch.along(m_flow_kg_s) {
-                    let outlet = &wanted[slot].outlet;
-                    let (c, f) = passed(outlet, limits.of(member), m_flow_kg_s, capacity_w_k);
-                    if let Some(limit) = limit_at(outlet, t_k, capacity_w_k) {
-                        next.set(member, limit);
-                    }
-                    let t_out_k = c + f * t_k;
-                    got[slot] = PortFlow { m_flow_kg_s, t_in_k: t_k, t_out_k };
-                    t_k = t_out_k;
-                    member += 1;
-                }
-            }
-            if next == limits || rounds == 0 {
-                return Ok(());
+        let before_k = self.arriving_k(flows, got);
+        for _ in 0..=3 * members {
+            let points = self.points_k(flows, heat_capacity_j_kg_k, wanted, got, limits);
+            let Ok(points_k) = points else { break };
+            let next = self.along(flows, heat_capacity_j_kg_k, wanted, &points_k, limits, got);
+            if next == limits {
+                return Ok(true);
             }
             limits = next;
-            rounds -= 1;
         }
+        let (limits, settled) = self.follow(flows, heat_capacity_j_kg_k, wanted, got, before_k)?;
+        let points_k = self.points_k(flows, heat_capacity_j_kg_k, wanted, got, limits)?;
+        self.along(flows, heat_capacity_j_kg_k, wanted, &points_k, limits, got);
+        Ok(settled)
+    }
+
+    /// What the ports get of these points; the limits that would act on them.
+    fn along(
+        &self,
+        flows: &BranchFlows,
+        heat_capacity_j_kg_k: f64,
+        wanted: &[PortRequest],
+        points_k: &[f64; MOST_POINTS],
+        limits: Limits,
+        got: &mut [PortFlow],
+    ) -> Limits {
+        let mut next = limits;
+        let mut member = 0;
+        for (branch, &m_flow_kg_s) in self.branches.iter().zip(flows) {
+            let capacity_w_k = m_flow_kg_s.abs() * heat_capacity_j_kg_k;
+            let mut t_k = points_k[branch.upstream(m_flow_kg_s)];
+            for slot in branch.along(m_flow_kg_s) {
+                let outlet = &wanted[slot].outlet;
+                let (c, f) = passed(outlet, limits.of(member), m_flow_kg_s, capacity_w_k);
+                if let Some(limit) = limit_at(outlet, t_k, capacity_w_k) {
+                    next.set(member, limit);
+                }
+                let t_out_k = c + f * t_k;
+                got[slot] = PortFlow { m_flow_kg_s, t_in_k: t_k, t_out_k };
+                t_k = t_out_k;
+                member += 1;
+            }
+        }
+        next
     }
 
     /// Temperatures of the points, K.

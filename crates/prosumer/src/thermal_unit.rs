@@ -150,6 +150,11 @@ pub trait ThermalUnit {
         out: &mut [f64],
     ) -> Exchange;
 
+    /// The longest step that it follows with these flows through its ports, s: a run makes shorter ones.
+    fn longest_step_s(&self, _ports: &[PortFlow], _state: &[f64]) -> f64 {
+        f64::INFINITY
+    }
+
     /// Outputs that are worth an event.
     fn flags(&self) -> &'static [Flag] {
         &[]

@@ -125,6 +125,13 @@ fn swings(simulation: &Simulation) -> Value {
     Value::Array(told.collect())
 }
 
+/// Circuits of houses that did not settle, and in how many steps.
+fn unsettled(simulation: &Simulation) -> Vec<Value> {
+    let (plan, state) = (simulation.plan(), simulation.state());
+    let counts = state.unsettled.iter().enumerate().filter(|(_, steps)| **steps > 0);
+    counts.map(|(i, steps)| json!({ "circuits": plan.circuits_at(i), "steps": steps })).collect()
+}
+
 /// When stations were blocked, and by whom.
 fn blocked_spans(simulation: &Simulation) -> Vec<Value> {
     let (plan, state) = (simulation.plan(), simulation.state());
@@ -277,6 +284,10 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
             "largest mass residual in kg/s": balances.mass_residual_kg_s,
         },
     });
+    let unsettled = unsettled(simulation);
+    if !unsettled.is_empty() {
+        summary["unsettled"] = Value::Array(unsettled);
+    }
     if let Some(steps) = state.stepping.report() {
         summary["automatic_step"] = steps;
     }

@@ -285,6 +285,7 @@ impl Builder<'_> {
         site_inputs::find(&mut plan, &writers);
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
+        plan.initial.unsettled = vec![0; plan.circuits.len() + plan.couplings.len()];
         plan.initial.swings = vec![SwingState::default(); plan.swing_watches.len()];
         plan.kpi_places = kpi::Places::of(&plan);
         plan.initial.kpis = kpi::Sums::of(&plan);
@@ -303,6 +304,7 @@ impl Builder<'_> {
         signals: &SignalTable,
     ) -> State {
         let initial_k = self.model.run.initial_k;
+        let standing = PortFlow { t_in_k: initial_k, t_out_k: initial_k, ..PortFlow::default() };
         State {
             time: Time::ZERO,
             network: NetworkState::new(&without_parts(self.model), initial_k),
@@ -313,15 +315,9 @@ impl Builder<'_> {
                 .flat_map(|unit| unit.equipment.initial_state(initial_k))
                 .collect(),
             unit_outputs: vec![0.0; units.last().map_or(0, |unit| unit.outputs.end)],
-            unit_ports: vec![
-                PortFlow {
-                    t_in_k: initial_k,
-                    t_out_k: initial_k,
-                    ..PortFlow::default()
-                };
-                units.last().map_or(0, |unit| unit.slots.end)
-            ],
+            unit_ports: vec![standing; units.last().map_or(0, |unit| unit.slots.end)],
             unit_exchange: vec![Exchange::default(); units.len()],
+            unsettled: Vec::new(),
             unit_flags: Vec::new(),
             stations: vec![StationState::default(); stations.len()],
             blocked_spans: Vec::new(),

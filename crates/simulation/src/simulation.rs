@@ -178,14 +178,21 @@ impl Simulation {
         Ok(())
     }
 
-    /// Inputs, actuators and flows of a step that ends at `latest`, or where a pulsing valve ends it.
+    /// Inputs, actuators and flows of a step that ends at `latest`, or sooner: where a pulsing valve ends it, or where units do
+    /// not follow longer.
     fn flow_until(&mut self, now: Time, latest: Time) -> Result<Time, RunError> {
         self.drive_inputs(latest)?;
-        let end = self.begin_pulses(now, latest);
+        let mut end = self.begin_pulses(now, latest);
         if end < latest {
             self.drive_inputs(end)?;
         }
         self.request_units((end - now).as_s());
+        let followed = self.followed_until(now, end);
+        if followed < end {
+            end = followed;
+            self.drive_inputs(end)?;
+            self.request_units((end - now).as_s());
+        }
         self.drive_stations();
         self.apply_inputs();
         self.move_actuators((end - now).as_s());

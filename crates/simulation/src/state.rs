@@ -49,6 +49,8 @@ pub struct State {
     pub(crate) unit_ports: Vec<PortFlow>,
     /// Electricity and other heat of each unit in the last step.
     pub(crate) unit_exchange: Vec<Exchange>,
+    /// Steps in which flows or temperatures of each circuit, then of each coupling, did not settle.
+    pub(crate) unsettled: Vec<u64>,
     /// Whether each watched output of a unit was up at the end of the last step.
     pub(crate) unit_flags: Vec<bool>,
     pub(crate) stations: Vec<StationState>,
@@ -115,6 +117,7 @@ impl State {
             + heap(&self.unit_outputs)
             + heap(&self.unit_ports)
             + heap(&self.unit_exchange)
+            + heap(&self.unsettled)
             + heap(&self.unit_flags)
             + heap(&self.stations)
             + heap(&self.station_heat_j)

@@ -17,6 +17,8 @@ use super::{BranchFlows, Coupling, MOST_BRANCHES, MOST_POINTS};
 const LEAST_KG_S: f64 = 1e-7;
 /// Newton ends when flows change by less, relative to the largest.
 const CHANGE: f64 = 1e-12;
+/// Flows that still change by more after the last iteration have not settled, relative to the largest.
+const SETTLED: f64 = 1e-6;
 const ITERATIONS: usize = 60;
 
 /// What a branch does.
@@ -29,8 +31,9 @@ enum Law {
 }
 
 impl Coupling {
-    /// The flows, kg/s, with those that the pumps want; `wanted_kg_s` of a branch without pump does not count.
-    pub fn flows(&self, wanted_kg_s: &BranchFlows) -> BranchFlows {
+    /// The flows, kg/s, with those that the pumps want, and whether they settled; `wanted_kg_s` of a branch without pump
+    /// does not count.
+    pub fn flows(&self, wanted_kg_s: &BranchFlows) -> (BranchFlows, bool) {
         let mut laws = [Law::Held(0.0); MOST_BRANCHES];
         for (i, branch) in self.branches.iter().enumerate() {
             laws[i] = match wanted_kg_s[i] {
@@ -42,12 +45,12 @@ impl Coupling {
         }
         let mut flows = [0.0; MOST_BRANCHES];
         for _ in 0..2 * self.branches.len() + 2 {
-            let p_pa = self.balance(&laws, &mut flows);
+            let (p_pa, balanced) = self.balance(&laws, &mut flows);
             if !self.try_again(wanted_kg_s, &p_pa, &flows, &mut laws) {
-                break;
+                return (flows, balanced);
             }
         }
-        flows
+        (flows, false)
     }
 
     /// What a pump that runs delivers, with what it draws along, kg/s.
@@ -65,8 +68,12 @@ impl Coupling {
         Law::Passive(branches[i].resistance / branches[i].idle_opening.powi(2))
     }
 
-    /// Flows with these laws, and the pressures of the points.
-    fn balance(&self, laws: &[Law; MOST_BRANCHES], flows: &mut BranchFlows) -> [f64; MOST_POINTS] {
+    /// Flows with these laws, and the pressures of the points; whether they follow the laws.
+    fn balance(
+        &self,
+        laws: &[Law; MOST_BRANCHES],
+        flows: &mut BranchFlows,
+    ) -> ([f64; MOST_POINTS], bool) {
         let laws = &laws[..self.branches.len()];
         let mut largest = 0.0_f64;
         for (flow, law) in flows.iter_mut().zip(laws) {
@@ -75,7 +82,7 @@ impl Coupling {
         }
         let mut p = [0.0; MOST_POINTS];
         if largest == 0.0 {
-            return p;
+            return (p, true);
         }
         // Every branch that takes what comes starts as if all of it came.
         for (flow, law) in flows.iter_mut().zip(laws) {
@@ -83,6 +90,7 @@ impl Coupling {
                 *flow = largest;
             }
         }
+        let mut settled = false;
         for _ in 0..ITERATIONS {
             let mut matrix = [[0.0; MOST_POINTS]; MOST_POINTS];
             let mut inflow = [0.0; MOST_POINTS];
@@ -112,11 +120,12 @@ impl Coupling {
                     *m = next;
                 }
             }
+            settled = change <= (SETTLED * largest).max(LEAST_KG_S);
             if change <= CHANGE * largest {
                 break;
             }
         }
-        p
+        (p, settled)
     }
 
     /// Pressures that let the inflows go through the conductances; that of the first point is 0.

@@ -35,7 +35,8 @@ fn house(engine: &dyn Fn(Branch) -> Branch) -> Coupling {
 /// Flows of the four branches.
 fn flows(engine: &dyn Fn(Branch) -> Branch, pumps: [f64; 3]) -> [f64; 4] {
     let [heating, engine_kg_s, boiler] = pumps;
-    let all = house(engine).flows(&wanted(&[0.0, heating, engine_kg_s, boiler]));
+    let (all, settled) = house(engine).flows(&wanted(&[0.0, heating, engine_kg_s, boiler]));
+    assert!(settled);
     [all[0], all[1], all[2], all[3]]
 }
 
@@ -93,16 +94,20 @@ fn three_points_share_by_their_resistances() {
         points: 3,
         branches: vec![branch(0, 2, 0), branch(0, 1, 1), second, pump(2, 0, 3)],
     };
-    let flows = coupling.flows(&wanted(&[0.0, 0.0, 0.0, 0.3]));
+    let (flows, _) = coupling.flows(&wanted(&[0.0, 0.0, 0.0, 0.3]));
     assert_near([flows[0], flows[1], flows[2], flows[3]], [0.2, 0.1, 0.1, 0.3]);
 }
 
 fn solved(coupling: &Coupling, pumps: &[f64], outlets: &[Outlet]) -> Vec<PortFlow> {
-    let flows = coupling.flows(&wanted(pumps));
+    let (flows, settled) = coupling.flows(&wanted(pumps));
     let wanted: Vec<PortRequest> =
         outlets.iter().map(|outlet| PortRequest { m_flow_kg_s: 0.0, outlet: *outlet }).collect();
     let mut got = vec![PortFlow { t_in_k: 290.0, ..PortFlow::default() }; outlets.len()];
-    coupling.solve(&flows, CP, &wanted, &mut got).unwrap();
+    let solved = coupling.solve(&flows, CP, &wanted, &mut got);
+    assert!(
+        settled && solved == Ok(true),
+        "{settled} {solved:?}: {coupling:?} {pumps:?} {outlets:?}"
+    );
     let heat: f64 =
         got.iter().map(|got| got.m_flow_kg_s.abs() * CP * (got.t_out_k - got.t_in_k)).sum();
     assert!(heat.abs() < 1e-6, "{heat} W are left: {got:?}");
@@ -150,8 +155,81 @@ fn standing_water_shows_what_would_come() {
 fn heat_that_nothing_takes_is_an_error() {
     let coupling = Coupling { points: 2, branches: vec![branch(0, 1, 0), pump(1, 0, 1)] };
     let outlets = [Outlet::HeatFlow(0.0), Outlet::HeatFlow(1000.0)];
-    let flows = coupling.flows(&wanted(&[0.0, 0.1]));
+    let (flows, _) = coupling.flows(&wanted(&[0.0, 0.1]));
     let wanted = outlets.map(|outlet| PortRequest { m_flow_kg_s: 0.0, outlet });
     let got = coupling.solve(&flows, CP, &wanted, &mut [PortFlow::default(); 2]);
     assert_eq!(got, Err(Undefined));
+}
+
+#[test]
+fn limits_hold_where_next_to_nothing_passes_the_storage() {
+    // Engine and boiler give 0.1 kg/s, the heating takes 0.1 less 1e-7: 5 kW up to 80 degC against 9 kW down to 40 degC. The
+    // heating takes what there is: the loop falls until the heating gives back 40 degC, and the engine warms that by 5 kW.
+    let closed = |branch| branch;
+    let nothing = Outlet::HeatFlow(0.0);
+    let heating = Outlet::Cooled { wanted_w: 9000.0, coldest_k: 313.15 };
+    let engine = Outlet::Warmed { wanted_w: 5000.0, hottest_k: 353.15 };
+    for rest_kg_s in [1e-7, 1e-10, -1e-7, -1e-10] {
+        let got = solved(
+            &house(&closed),
+            &[0.0, 0.1 - rest_kg_s, 0.1, 0.0],
+            &[STORAGE, heating, engine, nothing],
+        );
+        assert!((got[1].t_out_k - 313.15).abs() < 0.01, "{got:?}");
+        assert!((got[2].t_out_k - 313.15 - 5000.0 / 420.0).abs() < 0.02, "{got:?}");
+    }
+    // 3 kW down to 40 degC: the loop rises to 80 degC.
+    let heating = Outlet::Cooled { wanted_w: 3000.0, coldest_k: 313.15 };
+    let got =
+        solved(&house(&closed), &[0.0, 0.1 - 1e-7, 0.1, 0.0], &[STORAGE, heating, engine, nothing]);
+    assert!((got[2].t_out_k - 353.15).abs() < 0.01, "{got:?}");
+}
+
+#[test]
+fn random_houses_settle_and_keep_their_limits() {
+    let mut seed = 1_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut followed = 0;
+    for _ in 0..20_000 {
+        let opening = if random() < 0.5 { 0.0 } else { random() };
+        let (suction, check_valve) = (0.3 * random(), random() < 0.5);
+        let throttled = random() < 0.7;
+        let engine =
+            |branch| Branch { idle_opening: opening, suction, check_valve, throttled, ..branch };
+        let coupling = house(&engine);
+        let pump = |x: f64, y: f64| if x < 0.3 { 0.0 } else { 0.3 * y };
+        let mut pumps =
+            [0.0, pump(random(), random()), pump(random(), random()), pump(random(), random())];
+        // Every third one nearly closes in itself.
+        if random() < 0.33 {
+            pumps[1] = pumps[2] + pumps[3] + 1e-6 * (random() - 0.5);
+        }
+        let mut hot =
+            || Outlet::Warmed { wanted_w: 2e4 * random(), hottest_k: 320.0 + 50.0 * random() };
+        let (one, other) = (hot(), hot());
+        let heating =
+            Outlet::Cooled { wanted_w: 2e4 * random(), coldest_k: 300.0 + 30.0 * random() };
+        let outlets = [STORAGE, heating, one, other];
+        let got = solved(&coupling, &pumps.map(|m: f64| m.max(0.0)), &outlets);
+        for (port, outlet) in got.iter().zip(&outlets) {
+            if port.m_flow_kg_s == 0.0 {
+                continue;
+            }
+            let fits = match *outlet {
+                Outlet::Warmed { hottest_k, .. } => {
+                    port.t_out_k <= hottest_k.max(port.t_in_k) + 1e-6
+                }
+                Outlet::Cooled { coldest_k, .. } => {
+                    port.t_out_k >= coldest_k.min(port.t_in_k) - 1e-6
+                }
+                _ => true,
+            };
+            assert!(fits && (290.0..380.0).contains(&port.t_out_k), "{got:?} {outlets:?}");
+        }
+        followed += usize::from(got[0].m_flow_kg_s.abs() < 1e-5);
+    }
+    assert!(followed > 500, "{followed}");
 }

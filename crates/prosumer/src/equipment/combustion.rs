@@ -20,6 +20,7 @@ pub mod boiler;
 pub mod chp;
 mod engine;
 mod flow;
+mod load;
 pub mod map;
 pub mod stirling;
 
@@ -149,13 +150,12 @@ impl Combustion {
             0.0
         };
         let flow_heat_w = main.flow_heat_w + aux.flow_heat_w + rod_w;
-        let rod = if rod_w > 0.0 { 1.0 } else { 0.0 };
         let wish = FlowWish {
             heat_w: flow_heat_w,
             modulation: main.modulation,
             return_k,
             supply_set_k: signals.get(SUPPLY_SET),
-            flow: main.flow.max(aux.flow).max(rod),
+            flow: main.flow.max(aux.flow).max(f64::from(u8::from(rod_w > 0.0))),
         };
         let pump = self.engine.is_none_or(|engine| {
             engine.pump(state[self.engine_at()], state[self.engine_at() + 1] != 0.0, &main)
@@ -163,30 +163,6 @@ impl Combustion {
         let capacity_w_k = if pump { self.flow.capacity_w_k(&wish) } else { 0.0 };
         let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
         Plan { main, aux, rod_w, next_main, next_aux, tripped, overshot, pump, m_flow_kg_s }
-    }
-
-    /// The load that is asked for, and whether its smallest one overshoots a set supply.
-    fn load(&self, signals: &Signals<'_>, state: &[f64]) -> (f64, bool) {
-        let modulation = signals.get(MODULATION);
-        let (GeneratorCommand::SupplyTemperature, FlowRule::Flow(capacity_w_k)) =
-            (self.command, self.flow)
-        else {
-            return (modulation, false);
-        };
-        if modulation <= 0.0 {
-            return (0.0, false);
-        }
-        let return_k = state[RETURN_K];
-        let heat_w = |modulation| self.main.map.at(modulation, return_k).heat_w;
-        let wanted_w = capacity_w_k * (signals.get(SUPPLY_SET) - return_k);
-        let least = self.main.burner.modulation_min;
-        let least_w = heat_w(least);
-        let phase_on = BurnerState::read(&state[BURNERS..]).phase.on();
-        let band_w = if phase_on { BAND_K * capacity_w_k } else { 0.0 };
-        if least_w > wanted_w + band_w {
-            return (0.0, true);
-        }
-        (map::solved(heat_w, wanted_w, least), false)
     }
 
     /// Where the state of the engine begins: behind that of the burners.
@@ -283,7 +259,7 @@ impl ThermalUnit for Combustion {
         }
         let plan = self.plan(signals, state);
         let (m_flow_kg_s, heat_w) = (plan.m_flow_kg_s, plan.heat_w());
-        // The supply is no hotter where the water arrives warmer than in the step before.
+        // The supply is no hotter where the water arrives warmer than before, and not beyond what stops the unit.
         let outlet = match self.flow {
             _ if self.engine.is_some() => {
                 let engine = &state[self.engine_at()..];
@@ -291,9 +267,12 @@ impl ThermalUnit for Combustion {
                     content.outlet(engine[0], heat_w, state[STEP_S])
                 })
             }
-            FlowRule::Supply(_) if heat_w > 0.0 && m_flow_kg_s > 0.0 => {
+            flow if heat_w > 0.0 && m_flow_kg_s > 0.0 => {
                 let planned_k = heat_w / capacity_w_k(&self.medium, m_flow_kg_s);
-                let hottest_k = signals.get(SUPPLY_SET).max(state[RETURN_K] + planned_k);
+                let hottest_k = match flow {
+                    FlowRule::Supply(_) => signals.get(SUPPLY_SET).max(state[RETURN_K] + planned_k),
+                    _ => self.limits.supply_max_k + BAND_K,
+                };
                 Outlet::Warmed { wanted_w: heat_w, hottest_k }
             }
             _ => Outlet::HeatFlow(heat_w),
@@ -318,11 +297,10 @@ impl ThermalUnit for Combustion {
         let partly = planned_w > 0.0 && self.engine.is_none();
         let share = if partly { (q_w / planned_w).clamp(0.0, 1.0) } else { 1.0 };
         let on = plan.main.on.max(plan.aux.on);
-        let own_w = self.idle_w * (1.0 - on) + self.running_w * on;
         let rod_w = share * plan.rod_w;
         let fuel_w = share * (plan.main.fuel_w + plan.aux.fuel_w);
         let power_w = share * (plan.main.power_w + plan.aux.power_w);
-        let electric_w = own_w + rod_w - power_w;
+        let electric_w = self.idle_w * (1.0 - on) + self.running_w * on + rod_w - power_w;
         plan.next_main.write(&mut state[BURNERS..]);
         if self.aux.is_some() {
             plan.next_aux.write(&mut state[BURNERS + BurnerState::LEN..]);
@@ -363,8 +341,7 @@ impl ThermalUnit for Combustion {
         }
         let mut kept_w = 0.0;
         if let Some(content) = self.engine {
-            let at = self.engine_at();
-            let engine = &mut state[at..];
+            let engine = &mut state[self.engine_at()..];
             let lost_w = content.lost_w(engine[0], dt_s);
             kept_w = if dt_s > 0.0 { planned_w - lost_w - q_w } else { 0.0 };
             engine[0] += dt_s * kept_w / content.heat_capacity_j_k;
@@ -373,6 +350,14 @@ impl ThermalUnit for Combustion {
             out[15..].copy_from_slice(&[engine[0], lost_w, engine[2]]);
         }
         Exchange { electric_w, external_w: q_w + kept_w - electric_w }
+    }
+
+    fn longest_step_s(&self, _ports: &[PortFlow], state: &[f64]) -> f64 {
+        let heat_w = self.main.map.at(1.0, state[RETURN_K]).heat_w;
+        let longest_s = |content: EngineContent| {
+            content.longest_step_s(state[self.engine_at()], heat_w, self.limits.supply_max_k)
+        };
+        self.engine.map_or(f64::INFINITY, longest_s)
     }
 
     fn stored_j(&self, state: &[f64]) -> f64 {

@@ -3931,7 +3931,8 @@ class _Unit:
             cold_after_d.
         warm_up_w
             Heat that the cold engine takes for itself when it starts, W per 1.9 kW of electricity; it ends in
-            `warm_up_s`. Default: 1000.0. Also warm_up_kw, warm_up_mw.
+            `warm_up_s`. 1000 W without this; nothing with a content, which takes that heat itself: what is
+            given counts besides. Also warm_up_kw, warm_up_mw.
         warm_up_s
             Time in which the engine warms up, s. Default: 2400.0. Also warm_up_min, warm_up_h, warm_up_d.
         efficiency_factor
@@ -4404,6 +4405,7 @@ class _Unit:
         inverter_w: float | None = None,
         inverter_kw: float | None = None,
         inverter_mw: float | None = None,
+        phase: int | None = None,
         t_outdoor_k: float | None = None,
         t_outdoor_degc: float | None = None,
     ) -> str | None:
@@ -4441,6 +4443,8 @@ class _Unit:
             Share of the power that cables, inverter, dirt and angles leave. Default: 0.86.
         inverter_w
             Largest power of the inverter, W. Also inverter_kw, inverter_mw.
+        phase
+            Phase of the grid on which its inverter stands, 1 to 3; three phases alike without this.
         t_outdoor_k
             Outdoor temperature while neither weather nor anything else drives it, K. Default: 283.15. Also
             t_outdoor_degc.
@@ -4477,6 +4481,7 @@ class _Unit:
         soc_min: float | None = None,
         soc_max: float | None = None,
         initial_soc: float | None = None,
+        phase: int | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "battery".
 
@@ -4521,6 +4526,8 @@ class _Unit:
             Largest state of charge to which it is charged. Default: 1.0.
         initial_soc
             State of charge at the start. Default: 0.5.
+        phase
+            Phase of the grid on which its inverter stands, 1 to 3; three phases alike without this.
         """
     def household(
         self,
@@ -4540,6 +4547,7 @@ class _Unit:
         workday_absence: float | None = None,
         weekend_absence: float | None = None,
         gain_share: float | None = None,
+        phases: Literal["even", "random"] | None = None,
         utc_offset_s: float | None = None,
         utc_offset_min: float | None = None,
         utc_offset_h: float | None = None,
@@ -4578,6 +4586,9 @@ class _Unit:
         gain_share
             Share of the electricity that heats the rooms, output `appliances_w`. 0: the building counts it
             with its people. Default: 0.0.
+        phases
+            How the electricity is spread over the three phases of the grid. One of even, random. Default:
+            even.
         utc_offset_s
             Local clock over UTC, s. Default: 3600.0. Also utc_offset_min, utc_offset_h, utc_offset_d.
         """
@@ -4592,6 +4603,7 @@ class _Unit:
         power_w: float | None = None,
         power_kw: float | None = None,
         power_mw: float | None = None,
+        phase: int | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "electric_load".
 
@@ -4611,6 +4623,8 @@ class _Unit:
             Edge it stands on, where no site is given and not all its ports are in circuits
         power_w
             Power while nothing drives it, W. Default: 0.0. Also power_kw, power_mw.
+        phase
+            Phase of the grid on which it stands, 1 to 3; three phases alike without this.
         """
     def electric_vehicle(
         self,
@@ -4623,6 +4637,7 @@ class _Unit:
         charging_w: float | None = None,
         charging_kw: float | None = None,
         charging_mw: float | None = None,
+        phase: int | None = None,
         daily_j: float | None = None,
         daily_kwh: float | None = None,
         daily_mwh: float | None = None,
@@ -4658,6 +4673,8 @@ class _Unit:
             Edge it stands on, where no site is given and not all its ports are in circuits
         charging_w
             Power while it charges, W. Default: 11000.0. Also charging_kw, charging_mw.
+        phase
+            Phase of the grid on which it charges, 1 to 3; three phases alike without this.
         daily_j
             Energy of a day, J. Default: 28800000.0. Also daily_kwh, daily_mwh.
         arrival_s
@@ -4679,6 +4696,9 @@ class _Unit:
         station: str | None = None,
         id: str | None = None,
         port: str | None = None,
+        asymmetry_max_w: float | None = None,
+        asymmetry_max_kw: float | None = None,
+        asymmetry_max_mw: float | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "grid_connection".
 
@@ -4696,6 +4716,9 @@ class _Unit:
             Name, where no site is given
         port
             Edge it stands on, where no site is given and not all its ports are in circuits
+        asymmetry_max_w
+            Largest difference of two phases that is no event, W. Default: 4600.0. Also asymmetry_max_kw,
+            asymmetry_max_mw.
         """
     def ideal_house(
         self,
@@ -7284,6 +7307,7 @@ class Grid:
         controller: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
         schedule: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
         series: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
+        connection: Literal["four_pipe", "two_pipe"] | None = None,
         set: Mapping[str, Any] | None = None,
         without: Sequence[str] | None = None,
     ) -> str | None:
@@ -7309,6 +7333,9 @@ class Grid:
             As [[schedule]], with names within the house
         series
             As [[series]], with names within the house
+        connection
+            two_pipe: ports of a storage of its type at the same two heights become one pair of pipes that
+            takes the difference One of four_pipe, two_pipe.
         set
             Single fields: "storage.volume_l" = 500
         without

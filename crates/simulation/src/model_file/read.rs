@@ -15,6 +15,7 @@ mod sections;
 mod sensors;
 mod shared_commands;
 mod station_types;
+mod two_pipe;
 mod units;
 mod weather;
 

@@ -80,7 +80,7 @@ pub fn schema() -> Value {
         "network": entry(&schema_for!(NetworkEntry), &[]),
         "station_type": { "type": "object", "additionalProperties": station_type },
         "house_type": { "type": "object", "additionalProperties": house_schema(&[]) },
-        "house": list(house_schema(&["site", "type", "set", "without"])),
+        "house": list(house_schema(&["site", "type", "connection", "set", "without"])),
         "site": list(entry(&schema_for!(SiteEntry), &[])),
         "trench": list(trench),
         "station": list(station),
@@ -182,6 +182,11 @@ fn house_schema(own: &[&str]) -> Value {
                 "type": ["string", "array"],
                 "items": { "type": "string" },
                 "description": "Name of a house_type or of a house of the library (SF1, SF2, SF3, SF4, MF5), or a list of them",
+            }),
+            "connection" => json!({
+                "type": "string",
+                "enum": ["four_pipe", "two_pipe"],
+                "description": "two_pipe: ports of a storage of its type at the same two heights become one pair of pipes that takes the difference",
             }),
             "without" => json!({
                 "type": "array",

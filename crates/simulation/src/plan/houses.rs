@@ -119,6 +119,15 @@ impl Plan {
         self.grid_ports.get(port).map_or("", |place| self.units[place.unit].name.as_str())
     }
 
+    /// Names of the circuit, or of those of the coupling behind them, at a place of `State::unsettled`.
+    pub(crate) fn circuits_at(&self, place: usize) -> Vec<&str> {
+        let circuits = match place.checked_sub(self.circuits.len()) {
+            Some(coupling) => &self.couplings[coupling].circuits[..],
+            None => &self.circuits[place..=place],
+        };
+        circuits.iter().map(|circuit| circuit.name.as_str()).collect()
+    }
+
     /// Whether there are units that store heat or draw electricity: more than what loads and sources do.
     pub(crate) fn has_houses(&self) -> bool {
         self.units.iter().any(|unit| {

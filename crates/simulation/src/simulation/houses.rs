@@ -29,7 +29,7 @@ impl Simulation {
             }
         }
         for coupling in 0..self.plan.couplings.len() {
-            let flows = self.branch_flows(coupling);
+            let (flows, _) = self.branch_flows(coupling);
             let planned = &self.plan.couplings[coupling];
             for ((circuit, branch), flow) in
                 planned.circuits.iter().zip(&planned.coupling.branches).zip(flows)
@@ -56,6 +56,23 @@ impl Simulation {
         }
     }
 
+    /// The end of a step that begins now and is as long as the units follow, with the flows that they asked for; equal parts
+    /// of the step.
+    pub(super) fn followed_until(&self, now: Time, end: Time) -> Time {
+        let (plan, state) = (&self.plan, &self.state);
+        let longest = plan.units.iter().map(|unit| {
+            let (ports, own) = (unit.slots.clone(), unit.state.clone());
+            unit.equipment.longest_step_s(&state.unit_ports[ports], &state.unit_states[own])
+        });
+        let longest_s = longest.fold(f64::INFINITY, f64::min);
+        let step = end - now;
+        if step.as_s() <= longest_s {
+            return end;
+        }
+        let parts = (step.as_s() / longest_s).ceil();
+        now + Time((step.0 as f64 / parts) as i64)
+    }
+
     fn request_unit(&mut self, unit: usize) {
         let (unit, state) = (&self.plan.units[unit], &mut self.state);
         unit.equipment.request(
@@ -71,8 +88,8 @@ impl Simulation {
         self.pumped_kg_s(&self.plan.circuits[circuit])
     }
 
-    /// Flows of the branches of a coupling, kg/s.
-    fn branch_flows(&self, coupling: usize) -> BranchFlows {
+    /// Flows of the branches of a coupling, kg/s, and whether they settled.
+    fn branch_flows(&self, coupling: usize) -> (BranchFlows, bool) {
         let planned = &self.plan.couplings[coupling];
         let mut wanted_kg_s = [0.0; MOST_BRANCHES];
         for (wanted, circuit) in wanted_kg_s.iter_mut().zip(&planned.circuits) {
@@ -212,11 +229,12 @@ impl Simulation {
             &self.wanted,
             &mut self.state.unit_ports,
         );
-        solved.map_err(|Undefined| RunError::UndefinedCircuit {
+        let settled = solved.map_err(|Undefined| RunError::UndefinedCircuit {
             time: self.state.time.to_string(),
             circuit: planned.name.to_string(),
         })?;
-        for lead in 0..planned.leads.len() {
+        self.note_settling(i, settled);
+        for lead in 0..self.plan.circuits[i].leads.len() {
             let (unit, port) = self.plan.circuits[i].leads[lead];
             self.respond(unit, port);
         }
@@ -225,15 +243,16 @@ impl Simulation {
 
     /// The temperatures of the points of a coupling, and along its branches.
     fn meet(&mut self, i: usize) -> Result<(), RunError> {
-        let flows = self.branch_flows(i);
+        let (flows, balanced) = self.branch_flows(i);
         let planned = &self.plan.couplings[i];
         let heat_capacity_j_kg_k = self.plan.network.medium.heat_capacity_j_kg_k;
         let ports = &mut self.state.unit_ports;
         let solved = planned.coupling.solve(&flows, heat_capacity_j_kg_k, &self.wanted, ports);
-        solved.map_err(|Undefined| RunError::UndefinedCircuit {
+        let settled = solved.map_err(|Undefined| RunError::UndefinedCircuit {
             time: self.state.time.to_string(),
             circuit: planned.circuits[0].name.to_string(),
         })?;
+        self.note_settling(self.plan.circuits.len() + i, balanced && settled);
         for circuit in 0..self.plan.couplings[i].circuits.len() {
             for lead in 0..self.plan.couplings[i].circuits[circuit].leads.len() {
                 let (unit, port) = self.plan.couplings[i].circuits[circuit].leads[lead];
@@ -241,6 +260,31 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+
+    /// Counts a step in which a circuit, or behind them a coupling, did not settle; the first one is an event.
+    fn note_settling(&mut self, place: usize, settled: bool) {
+        if settled {
+            return;
+        }
+        let before = self.state.unsettled[place];
+        self.state.unsettled[place] += 1;
+        if before > 0 {
+            return;
+        }
+        let names = self.plan.circuits_at(place);
+        let (component, s) = (names[0].to_owned(), if names.len() > 1 { "s" } else { "" });
+        self.events.push(Event {
+            time: self.state.time,
+            severity: Severity::Warning,
+            kind: "unsettled".into(),
+            message: format!(
+                "{component}: flows and temperatures of the circuit{s} {} did not settle: valves and limits of its \
+                 units change each other; mass and heat still close. More such steps are counted in the summary",
+                names.join(", ")
+            ),
+            component,
+        });
     }
 
     /// Heat that the units hold, J above 0 degC.

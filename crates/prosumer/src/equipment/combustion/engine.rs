@@ -6,11 +6,14 @@
 //! 60 kJ/K take 12 minutes from 20 to 82 degC, as the table says. A stop gives what the content holds.
 //!
 //! **Assumptions** stirred; heat to the surroundings as at the start of a step. **Validity** steps shorter than what the pump
-//! needs to empty it, about a minute. **Numerics** exact over a step ([`Outlet::Stirred`]), whatever the flow; what the water
+//! needs to empty it, about a minute; a run makes steps shorter in which full load would heat it from where the pump starts to the limit of the supply. **Numerics** exact over a step ([`Outlet::Stirred`]), whatever the flow; what the water
 //! took is booked. **Sources** behaviour `zinsmeister2022`; capacity, loss and temperatures assumed.
 
 use crate::burner::Means;
 use anergy_core::port::Outlet;
+
+/// Steps are not made shorter than what heats the content by this, K.
+const LEAST_ROOM_K: f64 = 5.0;
 
 /// The content of an engine, ready to run. Its state: temperature, K; whether its pump runs; heat lost so far, J.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +47,12 @@ impl EngineContent {
         let full_w = self.loss_w_k * (t_k - self.ambient_k);
         let x = self.loss_w_k * dt_s / self.heat_capacity_j_k;
         if x > 1e-9 { -full_w * (-x).exp_m1() / x } else { full_w }
+    }
+
+    /// The longest step in which heat does not bring it above the hottest supply before its pump has a turn, s.
+    pub(super) fn longest_step_s(&self, t_k: f64, heat_w: f64, hottest_k: f64) -> f64 {
+        let room_k = (hottest_k - t_k.min(self.pump_on_k)).max(LEAST_ROOM_K);
+        if heat_w > 0.0 { room_k * self.heat_capacity_j_k / heat_w } else { f64::INFINITY }
     }
 
     /// What happens to the water.

@@ -448,3 +448,16 @@ fn what_cannot_be_is_refused() {
         assert!(found.contains(expected), "{found}");
     }
 }
+
+#[test]
+fn no_step_sends_more_through_the_tank_than_it_holds() {
+    let unit = insulated(10, Scheme::MixedLayers).build(&Medium::default()).unwrap();
+    let longest_s = |m_flow_kg_s: f64| {
+        let stream = PortFlow { m_flow_kg_s, t_in_k: 300.0, t_out_k: 300.0 };
+        unit.longest_step_s(&[stream], &[])
+    };
+    // 785 kg at 20 l/min in either direction: 2355 s. Whatever the flow: a minute.
+    assert!((longest_s(1.0 / 3.0) - 2355.0).abs() < 1e-6);
+    assert!((longest_s(-1.0 / 3.0) - 2355.0).abs() < 1e-6);
+    assert_eq!((longest_s(0.0), longest_s(100.0)), (f64::INFINITY, 60.0));
+}

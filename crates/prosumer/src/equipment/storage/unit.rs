@@ -30,6 +30,9 @@ const CHARGED_J: usize = 4;
 const DISCHARGED_J: usize = 5;
 pub(super) const COILS: usize = 6;
 
+/// Steps are not made shorter than this, s.
+const SHORTEST_LIMIT_S: f64 = 60.0;
+
 /// A storage ready to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Storage {
@@ -345,6 +348,12 @@ impl ThermalUnit for Storage {
         out: &mut [f64],
     ) -> Exchange {
         sized!(self.step(dt_s, signals, ports, state, out))
+    }
+
+    /// A port or coil must not send more through the tank than it holds.
+    fn longest_step_s(&self, ports: &[PortFlow], _state: &[f64]) -> f64 {
+        let largest_kg_s = ports.iter().fold(0.0, |m, port| f64::max(m, port.m_flow_kg_s.abs()));
+        (self.tank.layers.mass_kg() / largest_kg_s).max(SHORTEST_LIMIT_S)
     }
 
     fn stored_j(&self, state: &[f64]) -> f64 {

@@ -3,11 +3,13 @@
 //! `[[house]]` furnishes a site with the entries of its `[house_type.NAME]` and its own. In them names are those within
 //! the house: the site goes in front of the names of controllers, sensors, schedules and series, of what they measure,
 //! act on and drive, and becomes the `site` of the others. `set` changes single fields: `{ "storage.volume_l" = 500 }`;
-//! `without` leaves parts of the type out: `["boiler", "charging"]`. A type that the file does not have may be one of the
+//! `without` leaves parts of the type out: `["boiler", "charging"]`; `connection = "two_pipe"` joins ports of storages
+//! ([`two_pipe`]). A type that the file does not have may be one of the
 //! library ([`super::super::house_library`]); a list of types adds up.
 
 use super::ModelReader;
 use super::station_types::spans;
+use super::two_pipe;
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::{Key, Scalar, Span, Tree, TreeKind, parse_toml};
 use crate::model_file::house_library;
@@ -79,6 +81,7 @@ impl ModelReader<'_> {
                 parts.extend(self.of_type(&what, &name)?);
             }
         }
+        self.connect(&what, &mut tree, &mut parts)?;
         self.leave_out(&what, &mut tree, &mut parts)?;
         let mut changes = self.changes(&what, &mut tree)?;
         parts.extend(tree.entries().iter().cloned());
@@ -87,7 +90,10 @@ impl ModelReader<'_> {
             let Some((section, has_site)) = found else {
                 let names: Vec<&str> = FURNITURE.iter().map(|(section, _)| *section).collect();
                 let hint = did_you_mean(&key.name, names.iter().copied()).unwrap_or_else(|| {
-                    format!("a house has site, type, set, without, {}", names.join(", "))
+                    format!(
+                        "a house has site, type, connection, set, without, {}",
+                        names.join(", ")
+                    )
                 });
                 let message = format!("{what}: unknown field `{}`", key.name);
                 self.reader.report(Diagnostic::new(message, key.span.range()).with_hint(hint));
@@ -145,6 +151,34 @@ impl ModelReader<'_> {
         });
         let message = format!("{what}: there is no house_type \"{word}\"");
         self.reader.report(Diagnostic::new(message, name.span.range()).with_hint(hint));
+        None
+    }
+
+    /// Connects the storages of the type as `connection` says.
+    fn connect(&mut self, what: &str, tree: &mut Tree, parts: &mut Vec<(Key, Tree)>) -> Option<()> {
+        let Some((_, word)) = tree.take("connection") else { return Some(()) };
+        let (message, hint) = match &word.kind {
+            TreeKind::Scalar(Scalar::Text(word)) if word == "four_pipe" => return Some(()),
+            TreeKind::Scalar(Scalar::Text(word)) if word == "two_pipe" => {
+                if two_pipe::connect(parts) {
+                    return Some(());
+                }
+                let message =
+                    format!("{what}: no storage of its type has two ports at the same two heights");
+                (
+                    message,
+                    "two pipes join such ports; write the circuits with `from` and `to` instead",
+                )
+            }
+            _ => {
+                let message = format!("{what}: connection must be \"four_pipe\" or \"two_pipe\"");
+                (
+                    message,
+                    "four_pipe: each circuit has its own ports of the storage, as the type says",
+                )
+            }
+        };
+        self.reader.report(Diagnostic::new(message, word.span.range()).with_hint(hint));
         None
     }
 
