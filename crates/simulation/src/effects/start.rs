@@ -65,11 +65,14 @@ impl ModelChange for Start {
                 Ok(vec![scale("start_s")])
             }
             EquipmentParams::Chp(engine) => {
-                // A warm-up that falls from `W` to nothing takes `W t/2`, of an engine of this size.
-                let per_w = 0.5 * engine.warm_up_s * engine.size_of_measured();
-                let warm_up_w = engine.warm_up_w() + self.energy_j / per_w;
-                let warm_up = Change::Set { parameter: name("warm_up_w"), value: json!(warm_up_w) };
-                Ok(vec![scale("start_s"), scale("warm_start_s"), warm_up])
+                let mut changes = vec![scale("start_s"), scale("warm_start_s")];
+                if self.energy_j > 0.0 {
+                    // A warm-up that falls from `W` to nothing takes `W t/2`, of an engine of this size.
+                    let per_w = 0.5 * engine.warm_up_s * engine.size_of_measured();
+                    let value = json!(engine.warm_up_w() + self.energy_j / per_w);
+                    changes.push(Change::Set { parameter: name("warm_up_w"), value });
+                }
+                Ok(changes)
             }
             _ => Err(wanted("generator with a start of its own", component)),
         }
