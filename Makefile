@@ -115,6 +115,7 @@ bench-thermal: ## Times of whole runs with heat: DESTEST 256 days, 1 000 consume
 	cargo build --release -p anergy-benches --bin thermal
 	target/release/thermal destest $${ANERGY_REFERENCE_DATA:-../shared/data}/destest/definition
 	target/release/thermal year 1000
+	target/release/thermal valves 1000
 	target/release/thermal steps 100 300 1000 3000 10000
 
 bench-memory: ## Memory of a network of 100 000 edges by phase, of anergy solve, of a state

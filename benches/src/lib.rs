@@ -6,6 +6,7 @@
 
 pub mod destest;
 pub mod tables;
+pub mod valves;
 
 use std::collections::HashSet;
 use std::f64::consts::PI;

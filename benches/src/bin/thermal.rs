@@ -2,16 +2,20 @@
 //!
 //! - `thermal destest FOLDER [DAYS]`: the DESTEST network (definition in FOLDER), 256 days at 1 min.
 //! - `thermal year CONSUMERS [DAYS]`: a generated grid at 15 min, loads from profiles, 365 days.
+//! - `thermal valves CONSUMERS [DAYS]`: the same with a thermostatic valve at every consumer, in steps of 15 min and in automatic
+//!   ones, and how far both are from steps of 1 min.
 //! - `thermal steps CONSUMERS...`: time per step of such grids, 96 steps after a day.
-//! - `thermal model CONSUMERS FILE`: the model file of such a grid, its profiles beside it.
+//! - `thermal model CONSUMERS FILE [valves]`: the model file of such a grid, its profiles beside it.
 //!
 //! Rows are gathered every hour and not kept. Building and reading are not in the time of the run.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use anergy_benches::valves::two_pipe_network_with_valves;
 use anergy_benches::{destest, two_pipe_network_of_a_year, write_profiles};
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_core::error::RecordError;
 use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
+use anergy_simulation::automatic_step::Step;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::run::{RunOptions, run};
@@ -60,6 +64,16 @@ fn main() {
             let name = format!("{consumers} consumers, step 15 min");
             whole_run(&name, &generated(consumers, &folder), number(2, 365.0));
         }
+        Some("valves") => {
+            let consumers = number(1, 1000.0) as usize;
+            let text = two_pipe_network_with_valves(consumers, SEED, &tempfile());
+            for step in ["15min", "auto"] {
+                let text = text.replace("step = \"15min\"", &format!("step = \"{step}\""));
+                let name = format!("{consumers} thermostatic valves, step {step}");
+                whole_run(&name, &text, number(2, 365.0));
+            }
+            deviations(&text);
+        }
         Some("steps") => {
             println!(
                 "| consumers | edges | per step, us | per step and consumer, us | peak memory, MB |"
@@ -73,14 +87,16 @@ fn main() {
             let file = Path::new(&arguments[2]);
             let profiles = file.with_extension("csv");
             std::fs::write(&profiles, write_profiles(SEED)).unwrap();
-            let text = two_pipe_network_of_a_year(
-                number(1, 100.0) as usize,
-                SEED,
-                profiles.to_str().unwrap(),
-            );
+            let (consumers, profiles) = (number(1, 100.0) as usize, profiles.to_str().unwrap());
+            let text = match arguments.get(3).map(String::as_str) {
+                Some("valves") => two_pipe_network_with_valves(consumers, SEED, profiles),
+                _ => two_pipe_network_of_a_year(consumers, SEED, profiles),
+            };
             std::fs::write(file, text).unwrap();
         }
-        _ => println!("thermal destest FOLDER [DAYS] | year CONSUMERS [DAYS] | steps CONSUMERS..."),
+        _ => println!(
+            "thermal destest FOLDER [DAYS] | year CONSUMERS [DAYS] | valves CONSUMERS [DAYS] | steps CONSUMERS..."
+        ),
     }
 }
 
@@ -115,6 +131,45 @@ fn whole_run(name: &str, text: &str, days: f64) {
         peak_mb()
     );
     println!("{}", report.summary["balances"]);
+}
+
+/// Plant and a consumer over two days of winter: flow, return and heat in other steps against those of 1 min.
+fn deviations(text: &str) {
+    let hours = |step: Option<Time>| -> (Vec<[f64; 3]>, f64) {
+        let mut simulation = simulation(text);
+        let channels =
+            ["plant.station.m_flow_kg_s", "plant.generator_inlet.t_k", "c1.unit.q_flow_w"]
+                .map(|name| simulation.channel(name).unwrap());
+        let automatic = simulation.plan().automatic_step();
+        let step = step.map_or(Step::Automatic(automatic), Step::Fixed);
+        let start = Instant::now();
+        let mut rows = Vec::new();
+        for hour in 1..=48 {
+            simulation.advance_to(Time(hour * HOUR.0), step).unwrap();
+            rows.push(channels.map(|channel| simulation.get(channel)));
+        }
+        (rows, start.elapsed().as_secs_f64())
+    };
+    let (exact, exact_s) = hours(Some(Time(60 * NS_PER_S)));
+    println!(
+        "| step, 48 h of winter | time, s | flow of the plant, rms | its return, rms K | heat of a house, rms |"
+    );
+    println!("|---|---|---|---|---|\n| 1 min | {exact_s:.2} | - | - | - |");
+    for (name, step) in [("15 min", Some(QUARTER)), ("automatic", None)] {
+        let (rows, spent_s) = hours(step);
+        // The first hours are the filling of the pipes.
+        let rms = |of: usize| {
+            let squares = rows.iter().zip(&exact).skip(6).map(|(a, b)| (a[of] - b[of]).powi(2));
+            (squares.sum::<f64>() / (rows.len() - 6) as f64).sqrt()
+        };
+        let mean = |of: usize| exact.iter().skip(6).map(|row| row[of]).sum::<f64>() / 42.0;
+        println!(
+            "| {name} | {spent_s:.2} | {:.2} % | {:.2} | {:.2} % |",
+            100.0 * rms(0) / mean(0).abs(),
+            rms(1),
+            100.0 * rms(2) / mean(2).abs()
+        );
+    }
 }
 
 fn steps(consumers: usize) {
