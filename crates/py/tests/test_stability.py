@@ -60,8 +60,11 @@ def test_dict_has_all_and_makes_the_same(model):
 
 def test_advice(model):
     found = model.stability(advise=True)
-    (cap,) = found.advice
+    cap, limit = found.advice
     assert cap["remedy"] == "speed_cap" and cap["helps"]
+    # The head that the capped pump has, held whatever its valve does.
+    assert limit["remedy"] == "dp_limit" and limit["helps"]
+    assert limit["changes"][0].startswith(f'{SECOND}: mode = "head", head_pa = ')
     assert found.before["blocked"] == ["sf1.station"]
     assert "speed cap" in found._repr_html_()
 

@@ -4,7 +4,8 @@
 //! a minute; what hunts, oscillates or is blocked at the end of the run decides. Gains: half of the critical
 //! one (6 dB), and divided by the relative gain of their loop, which for feeders at one shared resistance is about
 //! `1 + R_shared/R_own`. Speed cap: the speeds of the pumps that hold a blocked feeder back are lowered in
-//! proportion until it delivers half of what it means to. **Sources** specification 4.3.
+//! proportion until it delivers half of what it means to. Pressure limit: the same pumps hold the pressure differences
+//! that they have then, which stay what they are where valves close. **Sources** specification 4.3.
 
 use super::{Stability, analyse};
 use crate::build::build;
@@ -12,9 +13,11 @@ use crate::error::RunError;
 use crate::model::{DriverSpec, Model, Place};
 use crate::model_file::{InitialState, Interpolation};
 use crate::simulation::Simulation;
+use crate::steady;
 use anergy_control::controllers::ControllerParams;
 use anergy_core::clock::Time;
 use anergy_network::elements::ElementParams;
+use anergy_network::elements::pump::{PumpMode, PumpParams};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -44,7 +47,7 @@ pub struct Outcome {
 /// A remedy and what became of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
-    /// `lower_gain`, `gain_scheduling`, `dead_band`, `staggered_sampling`, `speed_cap`.
+    /// `lower_gain`, `gain_scheduling`, `dead_band`, `staggered_sampling`, `speed_cap`, `dp_limit`.
     pub remedy: &'static str,
     /// The values to write into the model file.
     pub changes: Vec<String>,
@@ -71,10 +74,12 @@ pub fn advise(model: &Model, found: &Stability) -> Result<(Outcome, Vec<Advice>)
     }
     for feeder in &found.feeders {
         if (feeder.blocked || feeder.held_back)
-            && let Some((changed, changes)) = speed_cap(model, &feeder.id)
+            && let Some(capped) = speed_cap(model, &feeder.id)
         {
-            let changed = Some((changed, changes));
-            advice.push(tried("speed_cap", changed, horizon_s, &before, |o| &o.blocked));
+            let limited = dp_limit(model, &capped.0, &opponents(found, &feeder.id));
+            for (remedy, changed) in [("speed_cap", Some(capped)), ("dp_limit", limited)] {
+                advice.push(tried(remedy, changed, horizon_s, &before, |o| &o.blocked));
+            }
         }
     }
     Ok((before, advice))
@@ -234,27 +239,55 @@ fn hunting_remedies(model: &Model, found: &Stability) -> Vec<(&'static str, Chan
     ]
 }
 
+/// The pumps that hold a feeder back.
+fn opponents(found: &Stability, feeder: &str) -> Vec<String> {
+    let own = found.feeders.iter().find(|f| f.id == feeder);
+    let all = own.into_iter().flat_map(|own| &own.opponents);
+    all.filter(|o| o.quantity == "speed" && o.weight_pa > 0.0).map(|o| o.id.clone()).collect()
+}
+
+/// Pumps that hold the pressure differences they have with capped speeds; `None` where a controller drives one of them.
+fn dp_limit(model: &Model, capped: &Model, pumps: &[String]) -> Changed {
+    let steady = steady::solve(capped).ok()?;
+    let mut changed = model.clone();
+    let mut changes = Vec::new();
+    for id in pumps {
+        let signal = format!("{id}.speed");
+        if model.controllers.iter().any(|c| c.acts_on.contains(&signal)) {
+            return None;
+        }
+        let head_pa = -steady.edge(id)?.dp_pa;
+        let edge = changed.edges.iter_mut().find(|edge| edge.id == id.as_str())?;
+        let ElementParams::Pump(pump) = &mut edge.params else { continue };
+        (pump.mode, pump.head_pa) = (PumpMode::Head, Some(head_pa.max(0.0)));
+        // What commands a speed says nothing any more.
+        let PumpParams { speed, initial_speed, speed_min, .. } = PumpParams::default();
+        (pump.speed, pump.initial_speed, pump.speed_min) = (speed, initial_speed, speed_min);
+        changed.drivers.retain(|driver| driver.signal != signal);
+        changes.push(format!("{id}: mode = \"head\", head_pa = {head_pa:.0}, no speed"));
+    }
+    (!changes.is_empty()).then_some((changed, changes))
+}
+
 /// Lower speeds of the pumps that hold a feeder back.
 fn speed_cap(model: &Model, feeder: &str) -> Changed {
     let with = |factor: f64| -> Changed {
         let found = analyse(model).ok()?;
-        let own = found.feeders.iter().find(|f| f.id == feeder)?;
         let mut changed = model.clone();
         let mut changes = Vec::new();
-        for opponent in own.opponents.iter().filter(|o| o.quantity == "speed" && o.weight_pa > 0.0)
-        {
-            let other = found.feeders.iter().find(|f| f.id == opponent.id)?;
+        for opponent in opponents(&found, feeder) {
+            let other = found.feeders.iter().find(|f| f.id == opponent)?;
             let cap = factor * other.speed;
-            let edge = changed.edges.iter_mut().find(|edge| edge.id == opponent.id)?;
+            let edge = changed.edges.iter_mut().find(|edge| edge.id == opponent.as_str())?;
             let ElementParams::Pump(pump) = &mut edge.params else { continue };
             pump.speed_max = cap;
             pump.speed = pump.speed.min(cap);
             pump.initial_speed = pump.initial_speed.min(cap);
-            let signal = format!("{}.speed", opponent.id);
+            let signal = format!("{opponent}.speed");
             for driver in changed.drivers.iter_mut().filter(|driver| driver.signal == signal) {
                 driver.values = driver.values.iter().map(|value| value.min(cap)).collect();
             }
-            changes.push(format!("{}: speed_max = {cap:.4}", opponent.id));
+            changes.push(format!("{opponent}: speed_max = {cap:.4}"));
         }
         (!changes.is_empty()).then_some((changed, changes))
     };
