@@ -79,6 +79,7 @@ mod tests {
             parameter: "factor",
             unit: "1",
             estimate: Estimate { value: 1.234_567, lo: 1.0, hi: 1.5 },
+            profile: None,
             beside: vec![("lag_s", 3.0)],
             probability: 1.0,
             evidence: 9.0,

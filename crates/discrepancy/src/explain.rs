@@ -6,6 +6,8 @@ use crate::experiment::Experiment;
 use crate::find::{Found, find};
 use crate::fit::Likelihood;
 use crate::gap::{Gap, gaps};
+use crate::next::Addition;
+use crate::profile::Profile;
 use crate::sanity;
 use crate::search::{Search, Settled};
 use crate::split::{SplitFile, Use, split};
@@ -45,6 +47,8 @@ pub struct Finding {
     pub unit: &'static str,
     /// Fitted value and 95 % interval.
     pub estimate: Estimate,
+    /// Ends of the 95 % interval of the profile likelihood; none where the data alone do not bound it. Only of what was added.
+    pub profile: Option<[Option<f64>; 2]>,
     /// What else of the effect was fitted: parameter and value.
     pub beside: Vec<(&'static str, f64)>,
     /// Probability among what was tried.
@@ -70,6 +74,23 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// With the interval of the profile likelihood, at least as wide as it was.
+    pub(crate) fn with_profile(mut self, profile: Profile, unknown: &Unknown) -> Self {
+        let ends = [profile.lo, profile.hi].map(|end| end.map(|x| unknown.value(x)));
+        let estimate = &mut self.estimate;
+        estimate.lo = ends[0].map_or(estimate.lo, |lo| lo.min(estimate.lo));
+        estimate.hi = ends[1].map_or(estimate.hi, |hi| hi.max(estimate.hi));
+        let flag = match ends {
+            [None, None] => Some("the data alone bound it on neither side"),
+            [None, _] => Some("the data alone do not bound it below"),
+            [_, None] => Some("the data alone do not bound it above"),
+            _ => None,
+        };
+        self.flags.extend(flag.map(str::to_owned));
+        self.profile = Some(ends);
+        self
+    }
+
     /// Whether it is an effect of a sensor, not of the plant.
     pub fn of_sensor(&self) -> bool {
         self.id.starts_with('S')
@@ -91,6 +112,8 @@ pub struct Explanation {
     pub effects: Vec<Finding>,
     /// Effects that the data do not tell apart from the first one, the first one included.
     pub class: Vec<Finding>,
+    /// What would tell the members of the class apart, by simulation, the most telling first.
+    pub additions: Vec<Addition>,
     /// Everything that was tried in the first round, best first.
     pub tried: Vec<Finding>,
     /// Unknowns of the last fit: name, value, and distance from the middle of their range in standard deviations.
@@ -167,8 +190,9 @@ pub fn explain(
         (0..uses.len()).filter(|&i| uses[i] == Some(wanted)).collect()
     };
     let all = candidates(experiment);
-    let likelihood =
-        Likelihood { sigma, fitted: of(Use::Identify), filter: Vec::new(), temperature: 1.0 };
+    // What was fitted foretells what chooses: both together weigh the evidence. What is shown stays untouched.
+    let fitted = (0..uses.len()).filter(|&i| uses[i].is_some_and(|u| u != Use::Show)).collect();
+    let likelihood = Likelihood::new(sigma, fitted);
     let sigma = likelihood.sigma.clone();
     let validated = of(Use::Validate);
     let mut search = Search::new(experiment, &all, tolerances(experiment), likelihood, validated);
@@ -182,6 +206,7 @@ pub fn explain(
         class,
         tried,
         null_readings,
+        additions,
         chosen,
     } = settled;
     let found = find(experiment, &uses, &sigma, &before, &null_readings)?;
@@ -200,6 +225,7 @@ pub fn explain(
         found: Some(found),
         effects: found_effects,
         class,
+        additions,
         tried,
         strained,
         gaps,
@@ -259,6 +285,7 @@ fn data_problem(problems: Vec<String>) -> Explanation {
         found: None,
         effects: Vec::new(),
         class: Vec::new(),
+        additions: Vec::new(),
         tried: Vec::new(),
         strained: Vec::new(),
         gaps: Vec::new(),

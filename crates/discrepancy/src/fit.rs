@@ -20,14 +20,14 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
 
 /// Step of a forward difference over the standard deviation of the prior.
-const DIFFERENCE: f64 = 0.02;
+pub(crate) const DIFFERENCE: f64 = 0.02;
 /// A fit ends when a step gains less than this.
-const GAIN: f64 = 1e-3;
+const GAIN: f64 = 0.02;
 const MAX_STEPS: u32 = 25;
 /// Evidence that a fit may leave on the table, nats.
 const ENOUGH: f64 = 0.05;
 /// Coordinates stay within so many standard deviations of their prior.
-const BOUND_SD: f64 = 6.0;
+pub(crate) const BOUND_SD: f64 = 6.0;
 
 /// Change of all readings with the coordinate of an unknown, SI.
 pub type Slopes = HashMap<Target, Vec<f64>>;
@@ -38,13 +38,20 @@ pub struct Likelihood {
     pub sigma: Vec<f64>,
     /// The samples that are fitted.
     pub fitted: Vec<usize>,
-    /// What a nearly right model leaves behind; empty: every sample is new.
+    /// What a nearly right model leaves behind, by sample; empty: every sample is new.
     pub filter: Vec<Gain>,
+    /// The same by run and sensor.
+    pub noises: HashMap<(usize, usize), Noise>,
     /// The likelihood is taken to the power of one over this.
     pub temperature: f64,
 }
 
 impl Likelihood {
+    /// To these samples, every one new.
+    pub fn new(sigma: Vec<f64>, fitted: Vec<usize>) -> Self {
+        Self { sigma, fitted, filter: Vec::new(), noises: HashMap::new(), temperature: 1.0 }
+    }
+
     /// Residuals over sigma of all samples.
     pub fn z(&self, experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
         let samples = experiment.samples.iter().zip(readings).zip(&self.sigma);
@@ -78,12 +85,20 @@ impl Likelihood {
             ((sample.run, sample.sensor), Residual { time_s: sample.time_s, value, sigma })
         };
         let all: Vec<_> = self.fitted.iter().map(of).collect();
-        let mut filter = Vec::with_capacity(all.len());
+        self.forget();
         for group in all.chunk_by(|a, b| a.0 == b.0) {
             let residuals: Vec<Residual> = group.iter().map(|(_, r)| *r).collect();
-            filter.extend(Noise::of(&residuals).gains(&residuals));
+            let noise = Noise::of(&residuals);
+            self.filter.extend(noise.gains(&residuals));
+            self.noises.insert(group[0].0, noise);
         }
-        self.filter = filter;
+    }
+
+    /// Takes every sample for new again.
+    pub fn forget(&mut self) {
+        self.filter.clear();
+        self.noises.clear();
+        self.temperature = 1.0;
     }
 }
 
@@ -117,6 +132,17 @@ impl Fit {
             value: value(self.at[i]),
             lo: value(self.at[i] - half),
             hi: value(self.at[i] + half),
+        }
+    }
+
+    /// The same fit without the unknowns that change nothing.
+    #[must_use]
+    pub fn only(self, kept: &[usize]) -> Self {
+        Self {
+            at: kept.iter().map(|&j| self.at[j]).collect(),
+            covariance: self.covariance.select_rows(kept).select_columns(kept),
+            sensitivity: self.sensitivity.select_columns(kept),
+            ..self
         }
     }
 
@@ -180,6 +206,8 @@ pub fn fit(
     let mut sensitivity = DMatrix::zeros(likelihood.fitted.len(), n);
     problem.columns(&slopes, &all, &mut sensitivity);
     let (mut damping, mut fresh) = (1e-3, old.is_empty());
+    // What the steps have gained since the sensitivities were simulated.
+    let mut since = if fresh { 0.0 } else { f64::INFINITY };
     for _ in 0..MAX_STEPS {
         let gradient = sensitivity.tr_mul(&here.e) - problem.prior_slope(&at);
         let hessian = curvature(&sensitivity, unknowns);
@@ -224,15 +252,17 @@ pub fn fit(
             }
             damping *= 5.0;
         }
+        since += gained;
         if gained > GAIN * (1.0 + 1e-3 * here.objective) {
             continue;
         }
-        if fresh {
+        // Where true sensitivities have led nowhere, they will not if they are simulated once more.
+        if fresh || 0.5 * since < ENOUGH {
             break;
         }
         problem.differences(&at, &here, renewed, &mut slopes)?;
         problem.columns(&slopes, renewed, &mut sensitivity);
-        (damping, fresh) = (1e-3, true);
+        (damping, fresh, since) = (1e-3, true, 0.0);
         let gradient = sensitivity.tr_mul(&here.e) - problem.prior_slope(&at);
         let step =
             curvature(&sensitivity, unknowns).cholesky().map(|factor| factor.solve(&gradient));
@@ -241,7 +271,7 @@ pub fn fit(
             break;
         }
     }
-    if !fresh {
+    if !fresh && since > 0.0 {
         problem.differences(&at, &here, renewed, &mut slopes)?;
     }
     problem.columns(&slopes, &all, &mut sensitivity);

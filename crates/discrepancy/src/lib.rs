@@ -5,6 +5,8 @@
 //! it found nothing.
 
 pub mod addition;
+#[cfg(test)]
+mod bench;
 pub mod catalogue;
 mod cores;
 pub mod data;
@@ -16,7 +18,9 @@ pub mod find;
 pub mod fit;
 pub mod gap;
 mod inputs;
+pub mod next;
 pub mod noise;
+pub mod profile;
 mod response;
 pub mod sanity;
 pub mod screen;

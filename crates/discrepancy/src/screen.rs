@@ -5,7 +5,10 @@
 //! could take up, the effect with strength `a` gains `(e'e - |P^(1/2)(e - a d)|^2)/2 = a d'e - a^2 d'Pd/2` nats, largest
 //! at `a = d'e/d'Pd`; `e` is at the optimum of the tolerances, where `N'e` is their prior's pull.
 //!
-//! **Assumptions** linear in the strength up to half as much again; both signs and the tolerance itself are tried, the best counts.
+//! A quantity that is a tolerance too is looked at along its sensitivity at the fit as well, with the tolerance given free.
+//!
+//! **Assumptions** linear in the strength up to half as much again; both signs are tried, of a flaw of a compared sensor, which
+//! needs no simulation, five strengths of each; the best counts.
 //!
 //! **Sources** Rao 1948 (key `rao1948`).
 
@@ -14,7 +17,7 @@ use crate::cores::on_all_cores;
 use crate::experiment::Experiment;
 use crate::fit::{Fit, Likelihood, curvature};
 use crate::unknown::Unknown;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashSet;
 
 /// Directions that agree better than this may be those of one effect.
@@ -57,8 +60,9 @@ impl Without<'_> {
         let without = |d: &DVector<f64>| d - n * factor.solve(&n.tr_mul(d));
         let looked = on_all_cores(open.len(), |k| {
             let candidate = &all[open[k]];
-            let mut best: Option<Screened> = None;
-            for start in strengths(candidate) {
+            let mut best = self.along_tolerance(candidate, open[k], &factor);
+            let simulated = self.experiment.is_simulated(&candidate.unknown.target);
+            for start in strengths(candidate, simulated) {
                 let Some(d) = self.changes(candidate, start) else { continue };
                 let direction = without(&d);
                 let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
@@ -85,6 +89,32 @@ impl Without<'_> {
         looked
     }
 
+    /// A quantity that is a tolerance too, by its sensitivity at the fit: without its narrow prior.
+    fn along_tolerance(
+        &self,
+        candidate: &Candidate,
+        place: usize,
+        factor: &Cholesky<f64, Dyn>,
+    ) -> Option<Screened> {
+        let own = &candidate.unknown;
+        let j = self.unknowns.iter().position(|u| u.target == own.target)?;
+        if self.unknowns[j].logarithmic != own.logarithmic {
+            return None;
+        }
+        let n = &self.fit.sensitivity;
+        let d = n.column(j) * own.sd;
+        let taken = factor.solve(&n.tr_mul(&d));
+        let direction = &d - n * &taken;
+        let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
+        if size < 1e-12 {
+            return None;
+        }
+        let a = along / size;
+        let start = self.fit.at[j] + a * (own.sd - taken[j]);
+        let start = start.clamp(own.mean - 2.0 * own.sd, own.mean + 2.0 * own.sd);
+        Some(Screened { candidate: place, start, gain: 0.5 * a * along, direction })
+    }
+
     /// Change of the whitened readings by a candidate.
     fn changes(&self, candidate: &Candidate, coordinate: f64) -> Option<DVector<f64>> {
         let own = &candidate.unknown;
@@ -108,10 +138,14 @@ impl Without<'_> {
     }
 }
 
-/// Coordinates at which it is tried.
-fn strengths(candidate: &Candidate) -> Vec<f64> {
+/// Coordinates at which it is tried: two, or more where it needs no simulation.
+fn strengths(candidate: &Candidate, simulated: bool) -> Vec<f64> {
     let unknown = &candidate.unknown;
-    vec![unknown.mean - 0.7 * unknown.sd, unknown.mean + 0.7 * unknown.sd]
+    let beside: &[f64] = if simulated { &[0.7] } else { &[0.2, 0.4, 0.7, 1.2, 1.8] };
+    beside
+        .iter()
+        .flat_map(|sd| [unknown.mean - sd * unknown.sd, unknown.mean + sd * unknown.sd])
+        .collect()
 }
 
 /// The best of the first look, and what points the same way as the best one.
@@ -125,6 +159,14 @@ pub fn kept(looked: &[Screened], most: usize) -> Vec<&Screened> {
     let mut kept: Vec<&Screened> = looked.iter().take(most).collect();
     kept.extend(looked.iter().skip(most).filter(rivals).take(most / 2));
     kept
+}
+
+/// What effects together gain, by the first look at each, nats.
+pub fn together(looked: &[&Screened], e: &DVector<f64>) -> f64 {
+    let n = looked.len();
+    let along = DVector::from_fn(n, |i, _| looked[i].direction.dot(e));
+    let gram = DMatrix::from_fn(n, n, |i, j| looked[i].direction.dot(&looked[j].direction));
+    gram.cholesky().map_or(0.0, |g| 0.5 * g.solve(&along).dot(&along))
 }
 
 /// The two effects that together gain most, by the first look at each: places in `looked`.

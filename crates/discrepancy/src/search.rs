@@ -9,16 +9,18 @@ use crate::error::ExplainError;
 use crate::experiment::Experiment;
 use crate::explain::{Finding, Stopwatch, Verdict};
 use crate::fit::{Care, Fit, Likelihood, Slopes, fit};
+use crate::next::{Addition, Rivals};
+use crate::profile::profile;
 use crate::screen::{Screened, Without, kept};
 use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::unknown::Unknown;
+use nalgebra::DVector;
 
-/// Residuals that are not quite what they are taken for speak too loudly: their likelihood is taken to the power of one over
-/// this, against priors that count in full; over more where even the best effect leaves more than sigma.
-const TEMPERATURE: f64 = 2.0;
-/// ... and over this times the root of the nats that the best effect gains: the more there is to explain, the more the flaws of
-/// what explains it weigh.
+/// The likelihood is taken to the power of one over this ...
+const TEMPERATURE: f64 = 1.0;
+/// ... or over this times the root of the nats that the best effect gains: the more there is to explain, the more the flaws of
+/// what explains it weigh. (Residuals that are not what they are taken for have been learned: [`Likelihood::learn`].)
 const LOUD: f64 = 0.125;
 /// Evidence by which an effect must beat the model without it, nats.
 const WINS: f64 = 4.0;
@@ -51,6 +53,9 @@ const UNEXPLAINED: f64 = 1.6;
 const EXPLAINED: f64 = 0.5;
 /// ... or leaves no more than this, standard deviations.
 const LEAVES: f64 = 1.6;
+/// What comes so near the best one, nats, is fitted with care; at most so many.
+const CLOSE: f64 = 8.0;
+const MOST_CLOSE: usize = 4;
 const MOST_EFFECTS: usize = 5;
 /// Candidates that are compared in earnest after the first look.
 const MOST_COMPARED: usize = 6;
@@ -70,6 +75,8 @@ pub(crate) struct Settled {
     pub(crate) tried: Vec<Finding>,
     /// Readings with the tolerances fitted, without an effect.
     pub(crate) null_readings: Vec<f64>,
+    /// What would tell the members of the class apart, the most telling first.
+    pub(crate) additions: Vec<Addition>,
     /// The unknowns of the last fit, and their values.
     pub(crate) chosen: Option<(Vec<Unknown>, Vec<f64>)>,
 }
@@ -86,25 +93,26 @@ impl Settled {
     }
 }
 
+/// The first round, and from where it started.
+struct First {
+    round: Round,
+    /// Of its fits.
+    temperature: f64,
+    base: Vec<Unknown>,
+    slopes: Slopes,
+}
+
 /// One round: what could be added next.
 struct Round {
-    null: Fit,
+    /// Readings without it, every sample new.
+    quick: Vec<f64>,
+    /// Their whitened residuals.
+    e: DVector<f64>,
     looked: Vec<Screened>,
     /// Residuals without it on samples that were not fitted.
     null_z: f64,
     tried: Vec<Tried>,
     findings: Vec<Finding>,
-}
-
-impl Round {
-    fn wins(&self) -> bool {
-        self.findings.first().is_some_and(|f| {
-            let (nats, errors) = FORETELLS;
-            let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
-            // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
-            f.evidence > STRAINS || (f.evidence > WINS && foretells)
-        })
-    }
 }
 
 pub(crate) struct Search<'a> {
@@ -138,12 +146,13 @@ impl<'a> Search<'a> {
             class: Vec::new(),
             tried: Vec::new(),
             null_readings: Vec::new(),
+            additions: Vec::new(),
             chosen: None,
         };
+        let mut first: Option<First> = None;
         while self.taken.len() < MOST_EFFECTS {
             let is_first = self.taken.is_empty();
-            self.likelihood.filter.clear();
-            self.likelihood.temperature = 1.0;
+            self.likelihood.forget();
             let care = if is_first { Care::Alone } else { Care::Quick };
             let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
             watch.lap("tolerances");
@@ -153,9 +162,7 @@ impl<'a> Search<'a> {
             }
             let worst =
                 differs(self.experiment, &self.likelihood.sigma, &null.readings, &self.validated);
-            if is_first {
-                self.leave_out(&null);
-            }
+            let null = if is_first { self.leave_out(null) } else { null };
             let Some(round) = self.round(null, z, watch)? else {
                 if is_first {
                     settled.because = format!(
@@ -167,30 +174,52 @@ impl<'a> Search<'a> {
             if is_first {
                 self.conclude(&round, worst, &mut settled);
                 settled.tried.clone_from(&round.findings);
-                if settled.verdict == Verdict::Unexplained && self.pair(&round, &mut settled)? {
-                    watch.lap("pairs");
-                    continue;
+                if settled.verdict == Verdict::Class {
+                    settled.additions = self.additions(&round, &settled.class);
+                    watch.lap("next measurement");
                 }
             }
             let named = matches!(settled.verdict, Verdict::Named | Verdict::Class);
-            if !(named && round.wins()) {
+            if !(named && round.findings.first().is_some_and(wins)) {
+                first = first.or_else(|| self.first(round));
                 break;
             }
+            let started = (self.base.clone(), self.slopes.clone(), self.likelihood.temperature);
             // Of a class the most plausible one.
             let head =
                 settled.class.first().filter(|_| is_first && settled.verdict == Verdict::Class);
             let is_head =
                 |f: &Finding| head.is_some_and(|h| (h.id, &h.component) == (f.id, &f.component));
             let k = round.findings.iter().position(is_head).unwrap_or(0);
-            self.take(&round.tried[k], &round.findings[k..=k], &mut settled);
+            self.take(&round.tried[k], &round.findings[k..=k], &mut settled)?;
             self.step_back(&mut settled)?;
             watch.lap("step back");
-            if settled.verdict == Verdict::Class {
-                break;
-            }
+            let (base, slopes, temperature) = started;
+            first = first.or(Some(First { round, temperature, base, slopes }));
+        }
+        if let Some(first) = first {
+            self.pair(&first, &mut settled)?;
+            watch.lap("pairs");
         }
         settled.taken.clone_from(&self.taken);
         Ok(settled)
+    }
+
+    fn first(&self, round: Round) -> Option<First> {
+        let (base, slopes) = (self.base.clone(), self.slopes.clone());
+        let temperature = self.likelihood.temperature;
+        self.taken.is_empty().then_some(First { round, temperature, base, slopes })
+    }
+
+    /// What would tell the members of a class apart.
+    fn additions(&self, round: &Round, class: &[Finding]) -> Vec<Addition> {
+        let of = |f: &Finding| {
+            let mut found = round.tried.iter().zip(&round.findings);
+            found.find(|(_, g)| (g.id, &g.component) == (f.id, &f.component)).map(|(t, _)| t)
+        };
+        let members = class.iter().filter_map(of).collect();
+        let (experiment, likelihood) = (self.experiment, &self.likelihood);
+        Rivals { experiment, likelihood, all: self.all, members }.additions()
     }
 
     fn z(&self, readings: &[f64]) -> f64 {
@@ -210,12 +239,13 @@ impl<'a> Search<'a> {
     }
 
     /// Leaves out what can hardly change anything.
-    fn leave_out(&mut self, null: &Fit) {
+    fn leave_out(&mut self, null: Fit) -> Fit {
         let moves = |j: usize| null.sensitivity.column(j).norm() * self.base[j].sd;
-        let kept = (0..self.base.len()).filter(|&j| moves(j) > MOVES);
-        let started = kept.map(|j| Unknown { start: null.at[j], ..self.base[j].clone() });
+        let kept: Vec<usize> = (0..self.base.len()).filter(|&j| moves(j) > MOVES).collect();
+        let started = kept.iter().map(|&j| Unknown { start: null.at[j], ..self.base[j].clone() });
         self.base = started.collect();
         self.slopes.clone_from(&null.slopes);
+        null.only(&kept)
     }
 
     fn common(&self) -> Common<'_> {
@@ -231,12 +261,11 @@ impl<'a> Search<'a> {
     /// Looks at everything, compares the best in earnest.
     fn round(
         &mut self,
-        null: Fit,
+        quick: Fit,
         null_z: f64,
         watch: &mut Stopwatch,
     ) -> Result<Option<Round>, ExplainError> {
         let open: Vec<usize> = (0..self.all.len()).filter(|i| !self.taken.contains(i)).collect();
-        let quick = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
         let without = Without {
             experiment: self.experiment,
             unknowns: &self.base,
@@ -246,7 +275,9 @@ impl<'a> Search<'a> {
         let looked = without.screen(self.all, &open);
         watch.lap("screen");
         let could = looked.first().map_or(0.0, |s| s.gain);
-        if could < WINS && null_z < UNEXPLAINED {
+        let far = |(u, x): (&Unknown, &f64)| ((x - u.mean) / u.sd).powi(2);
+        let strain = 0.5 * self.base.iter().zip(&quick.at).map(far).sum::<f64>();
+        if could < WINS && strain < STRAINS && null_z < UNEXPLAINED {
             return Ok(None);
         }
         let starts: Vec<Start> = kept(&looked, MOST_COMPARED)
@@ -258,39 +289,68 @@ impl<'a> Search<'a> {
         watch.lap("fits");
         rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         rough.truncate(MOST_COMPARED);
-        let none = Round { null, looked, null_z, tried: Vec::new(), findings: Vec::new() };
+        let (quick, e) = (quick.readings, quick.e);
+        let none = Round { quick, e, looked, null_z, tried: Vec::new(), findings: Vec::new() };
         let Some(best) = rough.first() else { return Ok(Some(none)) };
         self.likelihood.learn(self.experiment, &best.fit.readings);
+        self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
+        let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
+        let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
+        let mut tried = self.common().fits(&again, Care::Quick)?;
+        tried.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        // Those that may win, or belong to its class, with all sensitivities renewed.
+        let most = tried.first().map_or(0.0, |best| best.fit.log_evidence);
+        let near = CLOSE.max(2.0 * NEARLY * (most - null.log_evidence));
+        let close = tried.partition_point(|t| t.fit.log_evidence > most - near).min(MOST_CLOSE);
+        let thorough: Vec<Start> = tried.drain(..close).map(Start::again).collect();
+        tried.extend(self.common().fits(&thorough, Care::Thorough)?);
+        watch.lap("fits again");
+        let null_z = self.z(&null.readings);
+        let findings = self.ranked(&null, &mut tried);
+        Ok(Some(Round { null_z, tried, findings, ..none }))
+    }
+
+    /// The power of the likelihood: see [`TEMPERATURE`] and [`LOUD`].
+    fn temperature(&self, null: &[f64], best: &[f64]) -> f64 {
         let square = |readings: &[f64]| {
             let z = self.likelihood.z(self.experiment, readings);
             self.likelihood.whitened(|i| z[i]).norm_squared()
         };
-        let gain = 0.5 * (square(&quick.readings) - square(&best.fit.readings)).max(0.0);
-        let left =
-            self.likelihood.rms(self.experiment, &best.fit.readings, &self.likelihood.fitted);
-        self.likelihood.temperature = (TEMPERATURE * left.powi(2).max(1.0)).max(LOUD * gain.sqrt());
-        let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
-        let again = rough.into_iter().map(|tried| Start {
-            candidates: tried.candidates.clone(),
-            at: vec![0.0; tried.candidates.len()],
-            earlier: Some(tried),
-        });
-        let again: Vec<Start> = again.collect();
-        let mut tried = self.common().fits(&again, Care::Thorough)?;
-        watch.lap("fits");
-        let null_z = self.z(&null.readings);
-        let findings = self.ranked(&null, &mut tried);
-        Ok(Some(Round { null, null_z, tried, findings, ..none }))
+        let gain = 0.5 * (square(null) - square(best)).max(0.0);
+        TEMPERATURE.max(LOUD * gain.sqrt())
     }
 
-    fn take(&mut self, tried: &Tried, findings: &[Finding], settled: &mut Settled) {
+    fn take(
+        &mut self,
+        tried: &Tried,
+        findings: &[Finding],
+        settled: &mut Settled,
+    ) -> Result<(), ExplainError> {
         self.taken.extend(&tried.candidates);
-        settled.effects.extend(findings.iter().cloned());
+        for (finding, &place) in findings.iter().zip(&tried.places) {
+            let (unknowns, fit) = (&tried.unknowns, &tried.fit);
+            let profile = profile(self.experiment, unknowns, &self.likelihood, fit, place)?;
+            settled.effects.push(finding.clone().with_profile(profile, &unknowns[place]));
+        }
         let started = tried.unknowns.iter().zip(&tried.fit.at);
         self.base = started.map(|(u, at)| Unknown { start: *at, ..u.clone() }).collect();
         self.slopes.clone_from(&tried.fit.slopes);
         settled.chosen = Some((tried.unknowns.clone(), tried.fit.at.clone()));
+        Ok(())
     }
+}
+
+/// Whether an effect is more than what tolerances and noise would show by chance.
+fn wins(f: &Finding) -> bool {
+    let (nats, errors) = FORETELLS;
+    let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
+    // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
+    f.evidence > STRAINS || (f.evidence > WINS && foretells)
+}
+
+/// Logarithm of the odds of an effect so far from what is plausible, nats.
+fn prior(strain: f64) -> f64 {
+    -2.0 * (strain / PLAUSIBLE).max(1.0).ln()
 }
 
 /// Squared residuals beyond those that noise explains.

@@ -7,6 +7,7 @@ pub use html::html;
 use crate::explain::{Explanation, Finding, Verdict};
 use crate::find::Found;
 use crate::gap::Gap;
+use crate::next::{AGAIN, Addition};
 use crate::significance::State;
 use crate::split::Use;
 use serde_json::{Map, Value, json};
@@ -43,7 +44,7 @@ pub fn json(explanation: &Explanation) -> Value {
         json!({
             "id": f.id, "component": f.component, "what": f.words, "probability": f.probability,
             "evidence": f.evidence, "elpd": f.elpd, "elpd_error": f.elpd_error, "strain": f.strain,
-            "validation_z": f.validation_z, "flags": f.flags, "separates": f.separates,
+            "validation_z": f.validation_z, "reduction": f.reduction, "profile": f.profile, "flags": f.flags, "separates": f.separates,
             "params": { f.parameter: { "value": e.value, "lo": e.lo, "hi": e.hi, "unit": f.unit } },
         })
     };
@@ -58,6 +59,7 @@ pub fn json(explanation: &Explanation) -> Value {
         "problems": explanation.problems,
         "effects": explanation.effects.iter().map(effect).collect::<Vec<_>>(),
         "class": explanation.class.iter().map(|f| json!([f.id, f.component])).collect::<Vec<_>>(),
+        "next_measurements": explanation.additions,
         "tried": explanation.tried.iter().map(effect).collect::<Vec<_>>(),
         "found": explanation.found,
         "unknowns": explanation.strained.iter().map(|(name, value, far)| {
@@ -128,6 +130,36 @@ fn where_and_when(out: &mut String, found: &Found) {
     }
 }
 
+/// What is expected of an addition to the measurement.
+pub(crate) const EXPECTED: &str = "Simulated with every member at its fitted values: evidence by which the first one is expected to be told from the others if it is true, or they from it if they are, nats. From 3 on they are told apart.";
+/// Additions that are shown.
+const SHOWN: usize = 8;
+
+/// The most telling additions to the measurement, and the first run once more.
+fn shown_additions(explanation: &Explanation) -> impl Iterator<Item = &Addition> {
+    let all = explanation.additions.iter().enumerate();
+    all.filter(|(k, a)| *k < SHOWN || a.what == AGAIN).map(|(_, a)| a)
+}
+
+fn next_measurements(out: &mut String, explanation: &Explanation) {
+    if explanation.additions.is_empty() {
+        return;
+    }
+    let _ = write!(out, "\n### The next measurement\n\n{EXPECTED}\n\n| measurement | nats |");
+    let rivals = &explanation.additions[0].from;
+    for (name, _) in rivals {
+        let _ = write!(out, " from {name} |");
+    }
+    let _ = writeln!(out, "\n|---|---|{}", "---|".repeat(rivals.len()));
+    for addition in shown_additions(explanation) {
+        let _ = write!(out, "| {} | {:.1} |", addition.what, addition.nats);
+        for (_, nats) in &addition.from {
+            let _ = write!(out, " {nats:.1} |");
+        }
+        out.push('\n');
+    }
+}
+
 /// How long it took.
 fn times(explanation: &Explanation) -> String {
     let each = explanation.times.iter().map(|(part, s)| format!("{part} {s:.1} s"));
@@ -177,6 +209,10 @@ pub fn markdown(title: &str, explanation: &Explanation) -> String {
         for f in &explanation.class {
             let _ = writeln!(out, "- {} ({}): {}", f.id, f.words, f.separates);
         }
+        next_measurements(&mut out, explanation);
+    }
+    for f in explanation.effects.iter().filter(|f| !f.flags.is_empty()) {
+        let _ = writeln!(out, "\n{} at {}: {}.", f.id, f.component, f.flags.join("; "));
     }
     table(&mut out, "Tried, best first", &explanation.tried);
     if let Some(found) = &explanation.found {

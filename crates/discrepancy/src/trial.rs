@@ -43,6 +43,14 @@ pub struct Start {
     pub earlier: Option<Tried>,
 }
 
+impl Start {
+    /// From where an earlier fit ended.
+    pub fn again(tried: Tried) -> Self {
+        let at = vec![0.0; tried.candidates.len()];
+        Self { candidates: tried.candidates.clone(), at, earlier: Some(tried) }
+    }
+}
+
 impl Common<'_> {
     /// Fits beside what is there.
     ///

@@ -9,12 +9,15 @@ use anergy_network::elements::pipe::thermal::WallModel;
 use anergy_simulation::model::Model;
 use std::f64::consts::PI;
 
-/// Tolerance of the length of a pipe, relative.
-const LENGTH: f64 = 0.01;
-/// Tolerance of a heat loss, relative.
-const LOSS: f64 = 0.08;
-/// Tolerance of the temperature around a pipe, K.
-const SURROUNDINGS_K: f64 = 0.5;
+/// Tolerance of the length of a pipe, relative: the largest one of 1 %, over the root of 3 as that of a sensor.
+const LENGTH: f64 = 0.01 / ROOT3;
+/// Tolerance of a heat loss, relative: at most 8 %.
+const LOSS: f64 = 0.08 / ROOT3;
+/// Tolerance of the temperature around a pipe, K: at most 0.5 K.
+const SURROUNDINGS_K: f64 = 0.5 / ROOT3;
+/// Tolerance of a pressure loss, relative: at most 2 %.
+const FRICTION: f64 = 0.02 / ROOT3;
+const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// Wall of a pipe whose outer diameter is not known, m.
 const WALL_M: f64 = 0.003;
 
@@ -26,6 +29,7 @@ fn pipes(model: &Model) -> impl Iterator<Item = (&str, &PipeParams)> {
 }
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
+    let pressure = sensed(experiment, "pa");
     for (component, _) in pipes(&experiment.model) {
         let free = |id| !has(experiment, id, component);
         if free("P10") {
@@ -33,6 +37,10 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         }
         if free("P2") {
             let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, LOSS);
+            all.push(Unknown { logarithmic: true, ..factor });
+        }
+        if pressure && free("P8") {
+            let factor = Unknown::plain(effect_target("P8", component, "factor"), 0.0, FRICTION);
             all.push(Unknown { logarithmic: true, ..factor });
         }
         if free("P3") {
@@ -49,14 +57,15 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             of_heat(component, pipe, all);
         }
         if pressure {
-            all.push(Candidate::effect(
+            let friction = Candidate::effect(
                 "P8",
                 component,
                 "pressure loss of the pipe",
                 ("factor", "1"),
                 |target| Unknown::between(target, 0.5, 5.0).starting_at(1.0),
                 "pressure losses at two flow rates",
-            ));
+            );
+            all.push(friction.tolerated(0.0, FRICTION));
         }
     }
 }

@@ -9,6 +9,9 @@ use crate::unknown::{Target, Unknown};
 /// What the first readings may say too little of the water at the start, at least, K.
 const FIRST_K: f64 = 0.3;
 
+/// Time constant of a sensor beyond the one that is known, s: small ones cannot be told from how a front is smeared.
+const LAG_S: f64 = 1.5;
+
 /// The sensors of every clock but that of the (first of the) inputs, to which all others are relative.
 fn loggers(experiment: &Experiment) -> Vec<Vec<usize>> {
     let sensors = &experiment.sensors.sensor;
@@ -47,6 +50,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         }
         if experiment.sensors.sensor[i].role == Role::Compare {
             all.push(Unknown::plain(Target::Clock(i), 0.0, moment_s(experiment, i)));
+            all.push(Unknown::plain(Target::Lag(i), 0.0, LAG_S));
         }
     }
     for logger in loggers(experiment) {

@@ -295,3 +295,31 @@ fn times(run: &Run) -> Vec<f64> {
     let densest = run.tracks.iter().max_by_key(|track| track.time_s.len());
     densest.map_or_else(Vec::new, |track| track.time_s.clone())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+    use crate::catalogue::effect_target;
+    use crate::unknown::Unknown;
+
+    #[test]
+    fn a_part_that_loses_more_is_the_one_that_differs() {
+        // Insulation of the second pipe three times as bad: U A = 20 m/(2 K m/W) = 10 W/K, 38 K warmer than the ground and
+        // 0.2 kg/s: 0.45 K before, 1.4 K with it.
+        let loss = Unknown::plain(effect_target("P2", "far", "factor"), 1.0, 1.0);
+        let experiment = bench::experiment(&[(loss, 3.0)]);
+        let sigma = vec![0.05; experiment.samples.len()];
+        let before = experiment.readings(&[], &[]).unwrap();
+        let seen: Vec<usize> = (0..sigma.len()).collect();
+        let parts = parts(&experiment, &sigma, &before, &seen);
+        let of = |name: &str| parts.iter().find(|p| p.components == [name]).unwrap();
+        let (near, far) = (of("near"), of("far"));
+        assert!(far.probability > 0.95, "{parts:?}");
+        assert!(near.isolated_z < 1.0 && far.isolated_z > 10.0, "{parts:?}");
+        assert_eq!(far.sensors, ["T_house"]);
+        // 2 * 10 W/K * 37 to 52 K are missing: about 0.8 kW.
+        let flux = far.flux.as_ref().unwrap();
+        assert!((-1050.0..-600.0).contains(&flux.mean_w), "{}", flux.mean_w);
+    }
+}

@@ -145,3 +145,37 @@ pub(crate) fn changing(experiment: &Experiment) -> Vec<bool> {
     let own = samples.iter().zip(&rates);
     own.map(|(sample, rate)| *rate > CHANGING * largest[&(sample.run, sample.sensor)]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+
+    #[test]
+    fn regimes_of_the_bench_by_hand() {
+        let experiment = bench::experiment(&[]);
+        let all = regimes(&experiment);
+        let times = |name: &str| -> Vec<f64> {
+            let regime = all.iter().find(|r| r.name == name).unwrap();
+            let own = experiment.samples.iter().zip(&regime.holds);
+            own.filter(|(s, holds)| **holds && s.sensor == 2).map(|(s, _)| s.time_s).collect()
+        };
+        let span = |name: &str| {
+            let times = times(name);
+            (times[0], times[times.len() - 1], times.len())
+        };
+        // Nothing flows from 3490 s on; a stop is 6 intervals, at least 120 s, before.
+        assert_eq!(span("flow off"), (3490.0, 3600.0, 12));
+        assert_eq!(span("flow stopping"), (3370.0, 3480.0, 12));
+        assert!(all.iter().all(|r| r.name != "flow starting" && r.name != "flow reversed"));
+        // 0.1 kg/s from 1810 to 2700 s is the lowest third.
+        let low = times("flow low");
+        assert!(low.iter().all(|t| (1800.0..=2710.0).contains(t)) && low.len() >= 90, "{low:?}");
+        // The front of 1800 s passes the first pipe (11.6 l, 0.1 kg/s) after 115 s.
+        let changing = times("changing");
+        assert!(changing.iter().any(|t| (1880.0..1960.0).contains(t)));
+        assert!(!changing.iter().any(|t| (600.0..1700.0).contains(t)), "{changing:?}");
+        let steady = times("steady");
+        assert_eq!(changing.len() + steady.len(), 361);
+    }
+}

@@ -1,8 +1,8 @@
 //! The verdict of the first round.
 
 use super::{
-    BEYOND, EXPLAINED, LEAVES, NEARLY, PARALLEL, PLAUSIBLE, Round, Search, Settled, TOGETHER,
-    UNEXPLAINED, excess,
+    BEYOND, EXPLAINED, LEAVES, NEARLY, PARALLEL, Round, Search, Settled, TOGETHER, UNEXPLAINED,
+    excess, prior, wins,
 };
 use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;
@@ -10,37 +10,51 @@ use crate::trial::cosine;
 impl Search<'_> {
     /// The verdict of the first round.
     pub(super) fn conclude(&self, round: &Round, worst: f64, settled: &mut Settled) {
-        let Some(winner) = round.findings.first() else {
-            (settled.verdict, settled.because) =
-                (Verdict::Unexplained, "no effect of the catalogue could be tried".into());
-            return;
-        };
-        let wins = round.wins();
-        if wins {
-            let refuted = |f: &Finding| f.probability == 0.0;
-            for (t, f) in round.tried.iter().zip(&round.findings) {
-                let behind = winner.evidence - f.evidence;
-                let parallel = behind < 2.0 * TOGETHER && cosine(&round.tried[0], t) > PARALLEL;
-                if !refuted(f) && (behind < TOGETHER.max(NEARLY * winner.evidence) || parallel) {
-                    settled.class.push(f.clone());
-                }
-            }
-            // What is far from plausible goes last; of the rest the evidence decides.
-            let far = |f: &Finding| f.strain.max(PLAUSIBLE);
-            settled
-                .class
-                .sort_by(|a, b| far(a).total_cmp(&far(b)).then(b.evidence.total_cmp(&a.evidence)));
-        }
-        let null_z = round.null_z;
-        let explained = 1.0 - excess(winner.validation_z) / excess(null_z).max(1e-9);
-        (settled.verdict, settled.because) = if !wins && null_z.max(worst) < UNEXPLAINED {
+        let parallel: Vec<bool> =
+            round.tried.iter().map(|t| cosine(&round.tried[0], t) > PARALLEL).collect();
+        settled.class = class(&round.findings, &parallel);
+        (settled.verdict, settled.because) =
+            verdict(&round.findings, settled.class.len(), round.null_z, worst);
+    }
+}
+
+/// What these data do not tell from the winner, the winner included, the most plausible first; empty where nothing wins.
+/// `parallel` says whose sensitivities are those of the winner.
+fn class(findings: &[Finding], parallel: &[bool]) -> Vec<Finding> {
+    let Some(winner) = findings.first().filter(|f| wins(f)) else { return Vec::new() };
+    let belongs = |(f, parallel): &(&Finding, &bool)| {
+        let behind = winner.evidence - f.evidence;
+        let refuted = f.probability == 0.0;
+        !refuted
+            && (behind < TOGETHER.max(NEARLY * winner.evidence)
+                || (behind < 2.0 * TOGETHER && **parallel))
+    };
+    let mut class: Vec<Finding> =
+        findings.iter().zip(parallel).filter(belongs).map(|(f, _)| f.clone()).collect();
+    class.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    class
+}
+
+/// Evidence with what is known beforehand: beyond two standard deviations the tail of a Cauchy distribution, `1/strain^2`.
+fn weight(f: &Finding) -> f64 {
+    f.evidence + prior(f.strain)
+}
+
+/// The verdict, and why; `members` is the size of the class, `null_z` the residuals without an effect, `worst` those of the
+/// worst sensor that are more than chance.
+fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Verdict, String) {
+    let Some(winner) = findings.first() else {
+        return (Verdict::Unexplained, "no effect of the catalogue could be tried".into());
+    };
+    if !wins(winner) {
+        return if null_z.max(worst) < UNEXPLAINED {
             (
                 Verdict::Nothing,
                 format!(
                     "residuals are {null_z:.2} standard deviations, {worst:.2} at the worst sensor, and no effect explains them better than the tolerances"
                 ),
             )
-        } else if !wins {
+        } else {
             (
                 Verdict::Unexplained,
                 format!(
@@ -48,37 +62,113 @@ impl Search<'_> {
                     null_z.max(worst)
                 ),
             )
-        } else if winner.beyond > BEYOND {
-            (
-                Verdict::Unexplained,
-                format!(
-                    "the best effect, {} at {}, would need a value far from anything plausible",
-                    winner.id, winner.component
-                ),
-            )
-        } else if explained < EXPLAINED && winner.validation_z > LEAVES {
-            (
-                Verdict::Unexplained,
-                format!(
-                    "the best effect, {} at {}, takes away only {:.0} % of the discrepancy",
-                    winner.id,
-                    winner.component,
-                    100.0 * explained
-                ),
-            )
-        } else if settled.class.len() > 1 {
-            (
-                Verdict::Class,
-                format!("{} effects explain the data about equally well", settled.class.len()),
-            )
-        } else {
-            (
-                Verdict::Named,
-                format!(
-                    "its probability is {:.2}, with {:.0} nats more evidence than the model without it",
-                    winner.probability, winner.evidence
-                ),
-            )
         };
+    }
+    let explained = 1.0 - excess(winner.validation_z) / excess(null_z).max(1e-9);
+    if winner.beyond > BEYOND {
+        (
+            Verdict::Unexplained,
+            format!(
+                "the best effect, {} at {}, would have to be {:.1} standard deviations from what is plausible",
+                winner.id, winner.component, winner.beyond
+            ),
+        )
+    } else if explained < EXPLAINED && winner.validation_z > LEAVES {
+        (
+            Verdict::Unexplained,
+            format!(
+                "the best effect, {} at {}, takes away only {:.0} % of the discrepancy",
+                winner.id,
+                winner.component,
+                100.0 * explained
+            ),
+        )
+    } else if members > 1 {
+        (Verdict::Class, format!("{members} effects explain the data about equally well"))
+    } else {
+        (
+            Verdict::Named,
+            format!(
+                "its probability is {:.2}, with {:.0} nats more evidence than the model without it",
+                winner.probability, winner.evidence
+            ),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::unknown::Estimate;
+
+    fn finding(id: &'static str, evidence: f64) -> Finding {
+        Finding {
+            id,
+            component: "p".into(),
+            words: "",
+            parameter: "factor",
+            unit: "1",
+            estimate: Estimate { value: 1.0, lo: 0.9, hi: 1.1 },
+            profile: None,
+            beside: Vec::new(),
+            probability: 0.5,
+            evidence,
+            elpd: evidence,
+            elpd_error: 1.0,
+            strain: 1.0,
+            beyond: 1.0,
+            validation_z: 1.1,
+            reduction: 0.5,
+            flags: Vec::new(),
+            separates: "",
+        }
+    }
+
+    fn ids(class: &[Finding]) -> Vec<&str> {
+        class.iter().map(|f| f.id).collect()
+    }
+
+    #[test]
+    fn a_class_is_what_is_near_or_parallel_and_not_refuted() {
+        let findings =
+            [finding("A", 30.0), finding("B", 28.0), finding("C", 25.0), finding("D", 23.0)];
+        // 3 nats, or 4 % of 30 = 1.2; parallel ones within 6.
+        assert_eq!(ids(&class(&findings, &[true, false, false, false])), ["A", "B"]);
+        assert_eq!(ids(&class(&findings, &[true, false, true, true])), ["A", "B", "C"]);
+        let refuted = Finding { probability: 0.0, ..finding("B", 28.0) };
+        assert_eq!(ids(&class(&[finding("A", 30.0), refuted], &[true, true])), ["A"]);
+        // 4 % of 300 = 12.
+        assert_eq!(
+            ids(&class(&[finding("A", 300.0), finding("B", 290.0)], &[true, false])),
+            ["A", "B"]
+        );
+        assert!(class(&[finding("A", 1.0)], &[true]).is_empty());
+    }
+
+    #[test]
+    fn the_plausible_one_goes_first() {
+        let strained = Finding { strain: 9.0, ..finding("A", 30.0) };
+        let findings =
+            [strained, finding("B", 28.0), Finding { strain: 1.9, ..finding("C", 29.0) }];
+        // Of those within two standard deviations the one with more evidence; 2 ln(9/2) = 3.0 nats less for 9 of them.
+        assert_eq!(ids(&class(&findings, &[true, false, false])), ["C", "B", "A"]);
+    }
+
+    #[test]
+    fn every_verdict_has_its_reason() {
+        let of = |f: &[Finding], members, null_z, worst| verdict(f, members, null_z, worst).0;
+        let good = finding("A", 30.0);
+        assert_eq!(of(&[], 0, 3.0, 3.0), Verdict::Unexplained);
+        assert_eq!(of(&[finding("A", 1.0)], 0, 1.2, 0.0), Verdict::Nothing);
+        assert_eq!(of(&[finding("A", 1.0)], 0, 1.2, 2.5), Verdict::Unexplained);
+        assert_eq!(of(std::slice::from_ref(&good), 1, 3.0, 3.0), Verdict::Named);
+        assert_eq!(of(std::slice::from_ref(&good), 2, 3.0, 3.0), Verdict::Class);
+        let far = Finding { beyond: 3.5, ..good.clone() };
+        assert_eq!(of(&[far], 1, 3.0, 3.0), Verdict::Unexplained);
+        // 3^2 - 1 = 8; 2.5^2 - 1 = 5.25: takes away 34 %.
+        let little = Finding { validation_z: 2.5, ..good };
+        let (verdict, because) = verdict(&[little], 1, 3.0, 3.0);
+        assert_eq!(verdict, Verdict::Unexplained);
+        assert!(because.contains("34 %"), "{because}");
     }
 }

@@ -1,37 +1,13 @@
 //! What was tried, best first.
 
-use super::{AS_WELL, NEARLY, Search, TOGETHER, excess};
+use super::{AS_WELL, NEARLY, Search, TOGETHER, excess, prior};
 use crate::elpd;
+use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};
 use crate::fit::Fit;
 use crate::trial::Tried;
 
 impl Search<'_> {
-    /// Ranges of the fitted samples that belong to one block.
-    fn blocks(&self) -> Vec<(usize, usize)> {
-        let fitted = &self.likelihood.fitted;
-        let of = |k: usize| {
-            let sample = &self.experiment.samples[fitted[k]];
-            (sample.run, sample.sensor)
-        };
-        let mut blocks = Vec::new();
-        let mut from = 0;
-        for k in 1..=fitted.len() {
-            if k == fitted.len() || fitted[k] != fitted[k - 1] + 1 || of(k) != of(k - 1) {
-                blocks.push((from, k));
-                from = k;
-            }
-        }
-        // A record in one piece is cut.
-        let most = fitted.len().div_ceil(8).max(1);
-        let cut = |(from, until): (usize, usize)| {
-            let parts = (until - from).div_ceil(most);
-            let at = move |i: usize| from + (until - from) * i / parts;
-            (0..parts).map(move |i| (at(i), at(i + 1)))
-        };
-        blocks.into_iter().flat_map(cut).collect()
-    }
-
     /// Findings of what was tried, best first; what does badly on samples that were not fitted is refuted and comes last.
     pub(super) fn ranked(&self, null: &Fit, tried: &mut [Tried]) -> Vec<Finding> {
         let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
@@ -49,10 +25,15 @@ impl Search<'_> {
         // Where a share of the gain does not tell effects apart, it does not make them improbable either.
         let gain = best.fit.log_evidence - null.log_evidence;
         let loud = (NEARLY * gain / TOGETHER).max(1.0);
+        let strain = |t: &Tried| {
+            let of = |(&k, &place): (&usize, &usize)| self.all[k].strain(t.fit.at[place]);
+            t.candidates.iter().zip(&t.places).map(of).fold(0.0, f64::max)
+        };
         let over = |evidence: f64| ((evidence - best.fit.log_evidence) / loud).exp();
-        let open = tried.iter().filter(|t| !refuted(t)).map(|t| over(t.fit.log_evidence));
-        let total = open.sum::<f64>() + over(null.log_evidence);
-        let blocks = self.blocks();
+        let weight = |t: &Tried| over(t.fit.log_evidence) * prior(strain(t)).exp();
+        let total = tried.iter().filter(|t| !refuted(t)).map(&weight).sum::<f64>()
+            + over(null.log_evidence);
+        let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
         let of_null = elpd::by_block(null, &self.base, &blocks);
         let finding = |t: &Tried| -> Vec<Finding> {
             let elpd = elpd::by_block(&t.fit, &t.unknowns, &blocks);
@@ -70,8 +51,9 @@ impl Search<'_> {
                         place,
                         elpd::jackknife(&t.fit, &t.unknowns, &blocks, place),
                     ),
+                    profile: None,
                     beside: values_beside(candidate, &t.unknowns, &t.fit.at),
-                    probability: if refuted(t) { 0.0 } else { over(t.fit.log_evidence) / total },
+                    probability: if refuted(t) { 0.0 } else { weight(t) / total },
                     evidence: t.fit.log_evidence - null.log_evidence,
                     elpd,
                     elpd_error,
@@ -87,6 +69,27 @@ impl Search<'_> {
         };
         tried.iter().flat_map(finding).collect()
     }
+}
+
+/// Ranges of the fitted samples that belong to one block of time of one sensor.
+fn blocks(samples: &[Sample], fitted: &[usize]) -> Vec<(usize, usize)> {
+    let of = |k: usize| (samples[fitted[k]].run, samples[fitted[k]].sensor);
+    let mut blocks = Vec::new();
+    let mut from = 0;
+    for k in 1..=fitted.len() {
+        if k == fitted.len() || fitted[k] != fitted[k - 1] + 1 || of(k) != of(k - 1) {
+            blocks.push((from, k));
+            from = k;
+        }
+    }
+    // A record in one piece is cut.
+    let most = fitted.len().div_ceil(8).max(1);
+    let cut = |(from, until): (usize, usize)| {
+        let parts = (until - from).div_ceil(most);
+        let at = move |i: usize| from + (until - from) * i / parts;
+        (0..parts).map(move |i| (at(i), at(i + 1)))
+    };
+    blocks.into_iter().flat_map(cut).collect()
 }
 
 /// What the data leave open about a fitted value.
@@ -107,4 +110,20 @@ fn flags(tried: &Tried, place: usize) -> Vec<String> {
         }
     }
     flags
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_end_where_samples_are_missing_or_another_sensor_begins() {
+        let sample = |sensor| Sample { run: 0, sensor, time_s: 0.0, value: 0.0 };
+        let samples: Vec<Sample> = (0..20).map(|i| sample(i / 10)).collect();
+        // 0 to 3, 6 to 9 of the first sensor, 10 to 13 of the second; at most 12/8 = 2 samples each.
+        let fitted: Vec<usize> = (0..4).chain(6..14).collect();
+        let found = blocks(&samples, &fitted);
+        assert_eq!(found, [(0, 2), (2, 4), (4, 6), (6, 8), (8, 10), (10, 12)]);
+        assert!(blocks(&samples, &[]).is_empty());
+    }
 }

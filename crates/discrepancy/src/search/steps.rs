@@ -1,10 +1,10 @@
 //! A step back, and pairs of effects that hide each other.
 
-use super::{BEYOND, EXPLAINED, FORETELLS, KEEPS, PAIRS, Round, Search, Settled, WINS, excess};
+use super::{BEYOND, EXPLAINED, First, KEEPS, PAIRS, Search, Settled, WINS, excess};
 use crate::error::ExplainError;
 use crate::explain::Verdict;
 use crate::fit::{Care, fit};
-use crate::screen::pairs;
+use crate::screen::{Screened, pairs, together};
 use crate::trial::Start;
 use crate::unknown::Unknown;
 
@@ -39,50 +39,86 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Two effects that hide each other; whether a pair explains what no single one does.
+    /// Two effects that hide each other: takes a pair instead of what was found, where it explains clearly more.
     pub(super) fn pair(
         &mut self,
-        round: &Round,
+        first: &First,
         settled: &mut Settled,
-    ) -> Result<bool, ExplainError> {
+    ) -> Result<(), ExplainError> {
+        let found = matches!(settled.verdict, Verdict::Named | Verdict::Class);
         let (most, of) = PAIRS;
-        let best = &round.looked[..of.min(round.looked.len())];
-        let starts = pairs(best, &round.null.e, most).into_iter().map(|(i, j, _)| Start {
+        let looked = &first.round.looked;
+        let best = &looked[..of.min(looked.len())];
+        let e = &first.round.e;
+        let taken: Vec<&Screened> =
+            looked.iter().filter(|s| self.taken.contains(&s.candidate)).collect();
+        if !(found || settled.verdict == Verdict::Unexplained) || self.taken.len() > 2 {
+            return Ok(());
+        }
+        // What was found gains at least what its fits have shown.
+        let shown = settled.effects.iter().map(|f| f.evidence).sum::<f64>() * first.temperature;
+        let could = together(&taken, e).max(shown);
+        let starts = pairs(best, e, most).into_iter().filter(|(i, j, gain)| {
+            let pair = [best[*i].candidate, best[*j].candidate];
+            *gain > could + WINS
+                && !(self.taken.len() == 2 && pair.iter().all(|k| self.taken.contains(k)))
+        });
+        let starts = starts.map(|(i, j, _)| Start {
             candidates: vec![best[i].candidate, best[j].candidate],
             at: vec![best[i].start, best[j].start],
             earlier: None,
         });
         let starts: Vec<Start> = starts.collect();
         if starts.is_empty() {
-            return Ok(false);
+            return Ok(());
         }
-        let mut tried = self.common().fits(&starts, Care::Thorough)?;
-        let findings = self.ranked(&round.null, &mut tried);
-        let (Some(first), [one, other, ..]) = (tried.first(), &findings[..]) else {
-            return Ok(false);
+        let with = (self.base.clone(), self.slopes.clone());
+        self.likelihood.forget();
+        self.base.clone_from(&first.base);
+        self.slopes.clone_from(&first.slopes);
+        let mut rough = self.common().fits(&starts, Care::Quick)?;
+        rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        rough.truncate(1);
+        let Some(best) = rough.first() else { return Ok(()) };
+        self.likelihood.learn(self.experiment, &best.fit.readings);
+        self.likelihood.temperature = self.temperature(&first.round.quick, &best.fit.readings);
+        let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
+        let mut tried = self.common().fits(&again, Care::Thorough)?;
+        let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
+        let findings = self.ranked(&null, &mut tried);
+        let single = if self.taken.is_empty() {
+            first.round.tried.iter().take(1).map(|t| (&t.unknowns, &t.fit.slopes)).next()
+        } else {
+            Some((&with.0, &with.1))
         };
-        let single =
-            round.tried.iter().map(|t| t.fit.log_evidence).fold(f64::NEG_INFINITY, f64::max);
-        let gain = first.fit.log_evidence - single;
-        let explained = 1.0 - excess(one.validation_z) / excess(round.null_z).max(1e-9);
+        let rival = match single {
+            Some((unknowns, slopes)) => {
+                fit(self.experiment, unknowns, &self.likelihood, slopes, Care::Quick)?.log_evidence
+            }
+            None => null.log_evidence,
+        };
+        let (Some(pair), [one, other, ..]) = (tried.first(), &findings[..]) else { return Ok(()) };
+        let gain = pair.fit.log_evidence - rival;
+        let explained = 1.0 - excess(one.validation_z) / excess(self.z(&null.readings)).max(1e-9);
         let plausible = one.beyond.max(other.beyond) < BEYOND;
-        let (nats, errors) = FORETELLS;
         if gain > WINS
-            && one.elpd > nats.max(errors * one.elpd_error)
+            && pair.fit.log_evidence - null.log_evidence > WINS
             && explained > EXPLAINED
             && plausible
         {
             settled.because = format!(
-                "{} and {} together explain what none does alone, with {gain:.0} nats more evidence than the best one",
+                "{} and {} together explain more than one alone, with {gain:.0} nats more evidence",
                 one.id, other.id
             );
             settled.verdict = Verdict::Named;
             settled.class.clear();
+            settled.additions.clear();
+            settled.effects.clear();
+            self.taken.clear();
             let findings = findings[..2].to_vec();
-            let first = tried.swap_remove(0);
-            self.take(&first, &findings, settled);
-            return Ok(true);
+            let pair = tried.swap_remove(0);
+            return self.take(&pair, &findings, settled);
         }
-        Ok(false)
+        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! `report.html`: one file with figures.
 
-use super::{times, upper, value};
+use super::{EXPECTED, shown_additions, times, upper, value};
 use crate::experiment::Experiment;
 use crate::explain::{Explanation, Finding};
 use crate::split::Use;
@@ -36,6 +36,7 @@ pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> 
         let advice = |f: &Finding| format!("<li>{} ({}): {}</li>", f.id, f.words, f.separates);
         let items: String = explanation.class.iter().map(advice).collect();
         let _ = writeln!(out, "<p>What would tell them apart:</p><ul>{items}</ul>");
+        next_measurements(&mut out, explanation);
     }
     if !explanation.curves.before.is_empty() {
         out.push_str("<h2>Measured, before and after</h2>\n<p class=\"legend\"><span class=\"measured\">measured</span> <span class=\"before\">model as it is</span> <span class=\"after\">with the effects</span> <span class=\"shown\">shaded: neither fitted nor used to choose</span></p>\n");
@@ -95,6 +96,24 @@ pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> 
     }
     out.push_str("</body></html>\n");
     out
+}
+
+fn next_measurements(out: &mut String, explanation: &Explanation) {
+    let Some(first) = explanation.additions.first() else { return };
+    let cells = |kind: &str, cells: &mut dyn Iterator<Item = String>| -> String {
+        cells.map(|cell| format!("<{kind}>{}</{kind}>", escape(&cell))).collect()
+    };
+    let names = ["measurement".to_owned(), "nats".to_owned()].into_iter();
+    let head = cells("th", &mut names.chain(first.from.iter().map(|(n, _)| format!("from {n}"))));
+    let _ =
+        writeln!(out, "<h3>The next measurement</h3>\n<p>{EXPECTED}</p>\n<table><tr>{head}</tr>");
+    for addition in shown_additions(explanation) {
+        let all = std::iter::once(addition.nats).chain(addition.from.iter().map(|(_, x)| *x));
+        let numbers = all.map(|nats| format!("{nats:.1}"));
+        let row = cells("td", &mut std::iter::once(addition.what.clone()).chain(numbers));
+        let _ = writeln!(out, "<tr>{row}</tr>");
+    }
+    out.push_str("</table>\n");
 }
 
 fn html_table(out: &mut String, title: &str, findings: &[Finding]) {

@@ -1,0 +1,136 @@
+//! The interval of a parameter by its profile likelihood: how far it can move until the data speak against it, with everything
+//! else fitted anew.
+//!
+//! **Equation** `F(x) = min over the others of sum e^2 + sum ((x_j - mean_j)/sd_j)^2`, without the prior of the parameter itself.
+//! The 95 % interval holds the `x` with `F(x) - min F < 3.84` (chi-squared, one degree of freedom). On each side
+//! `sqrt(F - min F)` is nearly straight: two fits and the line through them give the end. A side on which it does not rise so
+//! far within the bounds of a fit is open: the data alone do not bound it there.
+//!
+//! **Sources** Raue et al. 2009 (key `raue2009`).
+
+use crate::error::ExplainError;
+use crate::experiment::Experiment;
+use crate::fit::{BOUND_SD, Care, Fit, Likelihood, fit};
+use crate::unknown::Unknown;
+
+/// Rise of the objective at the ends of the interval.
+const RISE: f64 = 3.84;
+/// Fits on each side.
+const FITS: usize = 3;
+/// Near enough, relative to the root of the rise.
+const NEAR: f64 = 0.1;
+/// A fixed parameter moves by no more than this share of its standard deviation.
+const FIXED: f64 = 1e-5;
+
+/// Ends of an interval in coordinates; none where it is open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    /// Lower end.
+    pub lo: Option<f64>,
+    /// Upper end.
+    pub hi: Option<f64>,
+}
+
+/// The profile of the unknown at `place`.
+///
+/// # Errors
+/// What keeps the model from running.
+pub fn profile(
+    experiment: &Experiment,
+    unknowns: &[Unknown],
+    likelihood: &Likelihood,
+    at: &Fit,
+    place: usize,
+) -> Result<Profile, ExplainError> {
+    let own = &unknowns[place];
+    let bound = |sign: f64| own.mean + sign * BOUND_SD * own.sd;
+    let objective = |x: f64| -> Result<f64, ExplainError> {
+        let mut fixed = unknowns.to_vec();
+        for (unknown, at) in fixed.iter_mut().zip(&at.at) {
+            unknown.start = *at;
+        }
+        fixed[place] = Unknown { mean: x, start: x, sd: FIXED * own.sd, ..own.clone() };
+        let found = fit(experiment, &fixed, likelihood, &at.slopes, Care::Quick)?;
+        Ok(without_own(&found, &fixed, place))
+    };
+    let least = without_own(at, unknowns, place);
+    // Standard deviation by the data and the other priors alone.
+    let own_precision = 1.0 / (own.sd * own.sd);
+    let precision = 1.0 / at.covariance[(place, place)].max(1e-300) - own_precision;
+    let sd = if precision > 1e-6 * own_precision { precision.powf(-0.5) } else { 1e3 * own.sd };
+    Ok(Profile {
+        lo: end(&objective, at.at[place], least, -sd, bound(-1.0))?,
+        hi: end(&objective, at.at[place], least, sd, bound(1.0))?,
+    })
+}
+
+/// Objective of a fit without the prior of one unknown.
+fn without_own(fit: &Fit, unknowns: &[Unknown], place: usize) -> f64 {
+    let priors = unknowns.iter().zip(&fit.at).enumerate().filter(|(j, _)| *j != place);
+    fit.e.norm_squared() + priors.map(|(_, (u, x))| ((x - u.mean) / u.sd).powi(2)).sum::<f64>()
+}
+
+/// Where the objective has risen by [`RISE`], from the middle towards a bound; `sd` has the sign of the side.
+fn end(
+    objective: &dyn Fn(f64) -> Result<f64, ExplainError>,
+    middle: f64,
+    least: f64,
+    sd: f64,
+    bound: f64,
+) -> Result<Option<f64>, ExplainError> {
+    let root = RISE.sqrt();
+    let within =
+        |step: f64| if sd > 0.0 { step.min(bound - middle) } else { step.max(bound - middle) };
+    let (mut before, mut height_before) = (0.0, 0.0);
+    let mut step = within(root * sd);
+    for _ in 0..FITS {
+        let height = (objective(middle + step)? - least).max(0.0).sqrt();
+        if (height - root).abs() < NEAR * root {
+            return Ok(Some(middle + step * root / height));
+        }
+        if height < root && step == within(f64::INFINITY.copysign(sd)) {
+            return Ok(None);
+        }
+        // The line through the last two points, at most three times as far.
+        let slope = (height - height_before) / (step - before);
+        let next = if slope * sd.signum() > 0.0 {
+            before + (root - height_before) / slope
+        } else {
+            3.0 * step
+        };
+        let next = if sd > 0.0 {
+            next.clamp(0.2 * step, 3.0 * step)
+        } else {
+            next.clamp(3.0 * step, 0.2 * step)
+        };
+        if height < root {
+            (before, height_before) = (step, height);
+        }
+        step = within(next);
+    }
+    Ok(Some(middle + step))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_by_hand() {
+        // F = (x/0.5)^2 rises by 3.84 at 0.98.
+        let parabola = |x: f64| Ok((x / 0.5).powi(2));
+        let found = end(&parabola, 0.0, 0.0, 0.3, 10.0).unwrap().unwrap();
+        assert!((found - 0.98).abs() < 1e-3, "{found}");
+        let found = end(&parabola, 0.0, 0.0, -2.0, -10.0).unwrap().unwrap();
+        assert!((found + 0.98).abs() < 1e-3, "{found}");
+        // Steeper above than below: ln-like.
+        let skew = |x: f64| Ok((x.exp() - 1.0).powi(2) * 4.0);
+        // e^x - 1 = 0.98: x = 0.683.
+        let found = end(&skew, 0.0, 0.0, 0.5, 10.0).unwrap().unwrap();
+        assert!((found - 0.683).abs() < 0.03, "{found}");
+        // Below it never rises by more than 4 (1)^2 = 4 > 3.84 only at e^x = 0.02.
+        assert_eq!(end(&skew, 0.0, 0.0, -0.5, -2.0).unwrap(), None);
+        // Flat: open.
+        assert_eq!(end(&|_| Ok(0.0), 0.0, 0.0, 1.0, 6.0).unwrap(), None);
+    }
+}
