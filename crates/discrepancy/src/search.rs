@@ -53,6 +53,8 @@ const UNEXPLAINED: f64 = 1.6;
 const EXPLAINED: f64 = 0.5;
 /// ... or leaves no more than this, standard deviations.
 const LEAVES: f64 = 1.6;
+/// Whatever was found, more than this is left by another cause, standard deviations.
+const TOO_MUCH: f64 = 4.0;
 /// What comes so near the best one, nats, is fitted with care; at most so many.
 const CLOSE: f64 = 8.0;
 const MOST_CLOSE: usize = 4;
@@ -201,8 +203,30 @@ impl<'a> Search<'a> {
             self.pair(&first, &mut settled)?;
             watch.lap("pairs");
         }
+        self.doubt(&mut settled)?;
         settled.taken.clone_from(&self.taken);
         Ok(settled)
+    }
+
+    /// Effects that leave far too much are not the cause.
+    fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
+        let Some((unknowns, at)) = &settled.chosen else { return Ok(()) };
+        let z = self.z(&self.experiment.readings(unknowns, at)?);
+        if z > TOO_MUCH {
+            let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
+            let names: Vec<String> = names.collect();
+            settled.because = format!(
+                "the best that was found, {}, leaves residuals of {z:.1} standard deviations",
+                names.join(" and ")
+            );
+            settled.verdict = Verdict::Unexplained;
+            settled.effects.clear();
+            settled.class.clear();
+            settled.additions.clear();
+            settled.chosen = None;
+            self.taken.clear();
+        }
+        Ok(())
     }
 
     fn first(&self, round: Round) -> Option<First> {
