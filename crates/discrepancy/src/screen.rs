@@ -106,13 +106,21 @@ impl Without<'_> {
         let taken = factor.solve(&n.tr_mul(&d));
         let direction = &d - n * &taken;
         let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
-        if size < 1e-12 {
+        // Tolerances that stick to their bounds are no point to start from.
+        if size < 1e-12 || (0..self.unknowns.len()).any(|i| self.fit.at_bound(self.unknowns, i)) {
             return None;
         }
         let a = along / size;
+        let gain = 0.5 * a * along;
+        // No more than there is to gain.
+        let far = |(u, x): (&Unknown, &f64)| ((x - u.mean) / u.sd).powi(2);
+        let strain = self.unknowns.iter().zip(&self.fit.at).map(far).sum::<f64>();
+        if gain > 0.5 * (self.fit.e.norm_squared() + strain) {
+            return None;
+        }
         let start = self.fit.at[j] + a * (own.sd - taken[j]);
         let start = start.clamp(own.mean - 2.0 * own.sd, own.mean + 2.0 * own.sd);
-        Some(Screened { candidate: place, start, gain: 0.5 * a * along, direction })
+        Some(Screened { candidate: place, start, gain, direction })
     }
 
     /// Change of the whitened readings by a candidate.
