@@ -86,10 +86,17 @@ learn: .venv-learn/.installed ## Train agents for anergy.gym and compare them wi
 		wntr==1.5.0 epyt==2.3.5.3 owa-epanet==2.3.5 "pandapipes>=0.16,<0.17" numba
 	touch $@
 
-peers: .venv-peers/.installed ## Imported networks against EPANET and pandapipes, tables into docs
+# oemof.thermal wants another numpy than pandapipes.
+.venv-heat/.installed:
+	$(PYTHON) -m venv .venv-heat
+	.venv-heat/bin/python -m pip install --quiet --disable-pip-version-check hplib==1.9 oemof.thermal==0.0.8
+	touch $@
+
+peers: .venv-peers/.installed .venv-heat/.installed ## Networks against EPANET and pandapipes, heat pumps and boilers against hplib and oemof, tables into docs
 	cargo build --release -p anergy
 	.venv-peers/bin/python tests/peers/epanet_import.py --out docs/src/validation/epanet.md
 	.venv-peers/bin/python tests/peers/pandapipes_import.py --out docs/src/validation/pandapipes.md
+	.venv-heat/bin/python -W ignore tests/peers/heat_generators.py --out docs/src/validation/heat-generators.md
 
 .venv-score/.installed:
 	$(PYTHON) -m venv .venv-score
@@ -145,4 +152,4 @@ demo: ## The main job on the embedded study
 
 clean: ## Remove what was built
 	cargo clean
-	rm -rf $(VENV) .venv-peers .venv-learn results
+	rm -rf $(VENV) .venv-peers .venv-heat .venv-learn results

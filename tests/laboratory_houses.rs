@@ -5,10 +5,12 @@
 
 use anergy_core::clock::Time;
 use anergy_core::recorder::Event;
-use anergy_simulation::balance::Balances;
+use anergy_simulation::balance::{Balances, summary};
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::pages::write_table;
+use std::fmt::Write;
 use std::path::Path;
 
 const HOUSES: [&str; 5] = ["sf1", "sf2", "sf3", "sf4", "mf5"];
@@ -101,6 +103,58 @@ fn runs_alone(house: &str, days: f64) -> Simulation {
     simulation
 }
 
+/// The sum of an output over the units of a house that have it, in units of `scale`.
+fn sum(simulation: &Simulation, house: &str, units: &[&str], output: &str, scale: f64) -> f64 {
+    let of = |unit: &&str| {
+        let channel = simulation.channel(&format!("{house}.{unit}.{output}")).ok()?;
+        Some(simulation.get(channel) / scale)
+    };
+    units.iter().filter_map(of).sum()
+}
+
+const MWH: f64 = 3.6e9;
+const KWH: f64 = 3.6e6;
+
+/// The command that writes the tables.
+const COMMAND: &str = "LABORATORY=all cargo test --workspace --test laboratory_houses";
+/// What burns or pumps heat, the boilers behind it.
+const FIRST: [&str; 4] = ["chp", "heat_pump", "stirling", "small_chp"];
+const ENGINES: [&str; 5] = ["chp", "heat_pump", "stirling", "small_chp", "large_chp"];
+
+/// The columns of a table of houses that have run.
+fn balance_table(simulations: &[(&str, Simulation)], scale: f64, digits: usize) -> String {
+    type Of = fn(&Simulation, &str, f64) -> f64;
+    let rows: [(&str, Of); 11] = [
+        ("gas", |s, house, scale| sum(s, house, electric(house), "fuel_j", scale)),
+        ("heat of engines or heat pump", |s, h, scale| sum(s, h, &ENGINES, "heat_j", scale)),
+        ("heat of the boiler", |s, house, scale| sum(s, house, &["boiler"], "heat_j", scale)),
+        ("heat of the sun", |s, house, scale| sum(s, house, &["collector"], "heat_j", scale)),
+        ("heat of rooms", |s, house, scale| sum(s, house, &["building"], "heat_j", scale)),
+        ("hot water with circulation", |s, house, scale| {
+            sum(s, house, &["water"], "taken_j", scale)
+        }),
+        ("electricity made: engines", |s, h, scale| sum(s, h, &ENGINES, "generated_j", scale)),
+        ("electricity made: roof", |s, h, scale| sum(s, h, &["roof"], "generated_j", scale)),
+        ("from the public grid", |s, house, scale| sum(s, house, &["grid"], "import_j", scale)),
+        ("to the public grid", |s, house, scale| sum(s, house, &["grid"], "export_j", scale)),
+        ("starts of the first generator", |s, house, _| sum(s, house, &FIRST, "starts", 1.0)),
+    ];
+    let names: Vec<String> = simulations.iter().map(|(house, _)| house.to_uppercase()).collect();
+    let mut table = format!("| | {} |\n|---|{}\n", names.join(" | "), "--:|".repeat(names.len()));
+    for (name, of) in rows {
+        let digits = if name.starts_with("starts") { 0 } else { digits };
+        let values = simulations.iter().map(|(house, s)| of(s, house, scale));
+        let values: Vec<String> = values
+            .map(|value| if value == 0.0 { "-".into() } else { format!("{value:.digits$}") })
+            .collect();
+        writeln!(table, "| {name} | {} |", values.join(" | ")).unwrap();
+    }
+    let errors = simulations.iter().map(|(_, s)| Balances::of(s).units_error());
+    let errors: Vec<String> = errors.map(|error| format!("{error:.0e}")).collect();
+    writeln!(table, "| heat left over, relative | {} |", errors.join(" | ")).unwrap();
+    table
+}
+
 #[test]
 fn a_cold_week_of_each_house() {
     // Starts of generators, kWh of heat that the documentation of the examples says.
@@ -113,6 +167,7 @@ fn a_cold_week_of_each_house() {
         ("mf5", "small_chp", 28.0, 524.0),
         ("mf5", "large_chp", 28.0, 1532.0),
     ];
+    let mut simulations = Vec::new();
     for house in HOUSES {
         let simulation = runs_alone(house, 7.0);
         for (_, unit, starts, heat_kwh) in said.iter().filter(|row| row.0 == house) {
@@ -124,7 +179,9 @@ fn a_cold_week_of_each_house() {
                 "{house} {unit}: {found:?}, documented {starts} starts, {heat_kwh} kWh"
             );
         }
+        simulations.push((house, simulation));
     }
+    write_table("laboratory", "week", COMMAND, &balance_table(&simulations, KWH, 0));
 }
 
 /// A run with closed balances without discomfort; heat of the rooms, J.
@@ -162,7 +219,9 @@ const MODELS: [(&str, &str); 6] = [
 #[test]
 fn steps_of_seconds_to_hours_work() {
     // With steps of 1 s a week with `LABORATORY=all`, else half a day.
-    let days = if std::env::var("LABORATORY").is_ok() { 7.0 } else { 0.5 };
+    let all = std::env::var("LABORATORY").is_ok();
+    let days = if all { 7.0 } else { 0.5 };
+    let mut table = "| model | 1 s | 60 s | 15 min | 1 h |\n|---|--:|--:|--:|--:|\n".to_owned();
     for (model, house) in MODELS {
         let text = text(model);
         let close = |days: f64, step_s: f64, fine_j: f64| {
@@ -171,11 +230,16 @@ fn steps_of_seconds_to_hours_work() {
                 (coarse_j - fine_j).abs() < 0.05 * fine_j,
                 "{model}, {step_s} s: {coarse_j} of {fine_j} J"
             );
+            coarse_j
         };
-        close(days, 1.0, comfortable_j(&text, house, days, 60.0));
+        let second_j = close(days, 1.0, comfortable_j(&text, house, days, 60.0));
         let fine_j = comfortable_j(&text, house, 7.0, 60.0);
-        close(7.0, 900.0, fine_j);
-        close(7.0, 3600.0, fine_j);
+        let coarse_j = [900.0, 3600.0].map(|step_s| close(7.0, step_s, fine_j));
+        let kwh = [second_j, fine_j, coarse_j[0], coarse_j[1]].map(|j| format!("{:.1}", j / KWH));
+        writeln!(table, "| laboratory-{model} | {} |", kwh.join(" | ")).unwrap();
+    }
+    if all {
+        write_table("laboratory", "steps", COMMAND, &table);
     }
 }
 
@@ -253,17 +317,36 @@ fn a_year_of_each_house_and_the_ring_in_seconds() {
         println!("LABORATORY is not set: years are not run");
         return;
     }
+    let mut simulations = Vec::new();
     for house in HOUSES {
         let begin = std::time::Instant::now();
-        runs_alone(house, 365.0);
+        let simulation = runs_alone(house, 365.0);
         println!("{house}: a year in {:.1} s, read every step", begin.elapsed().as_secs_f64());
+        simulations.push((house, simulation));
     }
-    for file in ["model.toml", "island.toml"] {
+    write_table("laboratory", "year", COMMAND, &balance_table(&simulations, MWH, 1));
+    let mut table = "| | SF1 | SF2 | SF3 | SF4 | MF5 | grid station | heat left over, relative |\n\
+                     |---|--:|--:|--:|--:|--:|--:|--:|\n"
+        .to_owned();
+    for (file, name) in [("model.toml", "with a grid station"), ("island.toml", "island")] {
         let begin = std::time::Instant::now();
         let simulation = ring(file, 1.0);
         println!("{file}: a day in {:.1} s", begin.elapsed().as_secs_f64());
         for house in HOUSES {
             assert_eq!(discomfort(&simulation, house), (0.0, 0.0), "{file} {house}");
         }
+        let stations = summary(&simulation, false)["kpis"]["stations"].clone();
+        let cells = HOUSES.iter().chain(&["plant"]).map(|site| {
+            let of = |name: &str| stations[format!("{site}.station")][name].as_f64();
+            let kwh = [of("heat_given_kwh"), of("heat_taken_kwh")];
+            match kwh {
+                [Some(given), Some(taken)] => format!("{given:.0}, {taken:.0}"),
+                _ => "-".to_owned(),
+            }
+        });
+        let cells: Vec<String> = cells.collect();
+        let error = Balances::of(&simulation).heat_error();
+        writeln!(table, "| {name} | {} | {error:.0e} |", cells.join(" | ")).unwrap();
     }
+    write_table("laboratory", "ring", COMMAND, &table);
 }

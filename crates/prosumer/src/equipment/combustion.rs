@@ -123,11 +123,14 @@ impl Combustion {
         let limits = &self.limits;
         let inside_k = if state[TRIPPED] != 0.0 { limits.restart_k } else { 0.0 };
         let enabled = signals.get(ENABLE) >= 0.5;
-        // One that is off does not trip, however warm its water is.
-        let tripped = enabled
+        let (modulation, overshot) = self.load(signals, state);
+        // One that is off and not asked for does not trip, however warm its water is.
+        let on = BurnerState::read(&state[BURNERS..]).phase.on();
+        let aux = self.aux.is_some() && signals.get(AUX).max(signals.get(ROD)) > 0.0;
+        let asked = enabled && (modulation > 0.0 || on || aux);
+        let tripped = (asked || state[TRIPPED] != 0.0)
             && (return_k > limits.return_max_k - inside_k
                 || state[SUPPLY_K] > limits.supply_max_k - inside_k);
-        let (modulation, overshot) = self.load(signals, state);
         let run = |stage: &Stage, at: usize, modulation: f64| {
             let mut next = BurnerState::read(&state[at..]);
             let modulation = if enabled { modulation } else { 0.0 };
