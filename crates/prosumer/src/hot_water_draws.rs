@@ -9,7 +9,8 @@
 //!
 //! **Assumptions** draws do not depend on each other and may overlap; a draw ends before midnight. **Validity**
 //! statistics of households. **Numerics** a day's draws follow from the seed and the date alone (the sum `N` has a
-//! closed form for each day of the week) and are kept in the state by their begin; means over a step are exact.
+//! closed form for each day of the week); the state keeps only their numbers by their begin, and begin and flow are made
+//! again from the number where they are needed; means over a step are exact.
 //!
 //! **Sources** `jordan2001`; flows, durations, shares and courses as in the profiles of the laboratory, `zinsmeister2023`.
 
@@ -76,9 +77,8 @@ pub struct Drawn {
     pub drawing_s: f64,
 }
 
-/// A draw in the state: begin and end within the day, s, flow, m3/s, kind.
-const DRAW: usize = 4;
-/// Places in front of the draws: the day, their number, the first that has not ended.
+/// Places in front of the draws: the day, their count, the first that has not ended. A draw is its number: that of its kind
+/// times `PER_KIND`, and which of its kind it is.
 const DAY: usize = 0;
 const COUNT: usize = 1;
 const NEXT: usize = 2;
@@ -112,7 +112,7 @@ impl Draws {
 
     /// Numbers it takes in a state.
     pub fn state_len(&self) -> usize {
-        FIRST + DRAW * self.most
+        FIRST + self.most
     }
 
     /// Nothing made yet.
@@ -163,25 +163,35 @@ impl Draws {
     /// Makes the draws of a day.
     fn make(&self, day: i64, state: &mut [f64]) {
         let (head, draws) = state.split_at_mut(FIRST);
-        let (draws, _) = draws.as_chunks_mut::<DRAW>();
         let mut count = 0;
-        for (kind, (flow, deviation, duration_s, _)) in KINDS.into_iter().enumerate() {
-            let base = kind as u64 * PER_KIND;
+        for kind in 0..KINDS.len() {
             let number = self.before(kind, day + 1) - self.before(kind, day);
             for i in 0..number as u64 {
                 let Some(draw) = draws.get_mut(count) else { break };
-                let index = base + 10 + 2 * i;
-                let begin_s = time_of_day_s(weekend(day), uniform(self.seed, day, index));
-                let begin_s = begin_s.min(DAY_S - duration_s);
-                let l_min =
-                    (flow + deviation * normal(self.seed, day, index + 40_000)).max(LEAST_L_MIN);
-                let flow_m3_s = l_min * M3_PER_L / S_PER_MIN;
-                *draw = [begin_s, begin_s + duration_s, flow_m3_s, kind as f64];
+                *draw = (kind as u64 * PER_KIND + i) as f64;
                 count += 1;
             }
         }
-        draws[..count].sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        let begin_s = |draw: f64| self.span_s(day, draw).0;
+        draws[..count].sort_unstable_by(|a, b| {
+            begin_s(*a).total_cmp(&begin_s(*b)).then_with(|| a.total_cmp(b))
+        });
         (head[DAY], head[COUNT], head[NEXT]) = (day as f64, count as f64, 0.0);
+    }
+
+    /// Begin and end of a draw within the day, s.
+    fn span_s(&self, day: i64, draw: f64) -> (f64, f64) {
+        let (_, _, duration_s, _) = KINDS[kind_of(draw)];
+        let begin_s = time_of_day_s(weekend(day), uniform(self.seed, day, index_of(draw)));
+        let begin_s = begin_s.min(DAY_S - duration_s);
+        (begin_s, begin_s + duration_s)
+    }
+
+    /// Flow of a draw, m3/s.
+    fn flow_m3_s(&self, day: i64, draw: f64) -> f64 {
+        let (flow, deviation, _, _) = KINDS[kind_of(draw)];
+        let chance = normal(self.seed, day, index_of(draw) + 40_000);
+        (flow + deviation * chance).max(LEAST_L_MIN) * M3_PER_L / S_PER_MIN
     }
 
     /// What is drawn on a day from `from_s` on for `span_s`, not beyond its end.
@@ -191,24 +201,25 @@ impl Draws {
         }
         let until_s = from_s + span_s;
         let (head, draws) = state.split_at_mut(FIRST);
-        let (draws, _) = draws.as_chunks::<DRAW>();
         let draws = &draws[..head[COUNT] as usize];
         let mut drawn = Drawn::default();
         let mut next = head[NEXT] as usize;
         // A repeated request may go back to the begin of its step: what ended before stays skipped.
-        while draws.get(next).is_some_and(|draw| draw[1] <= from_s) {
+        while draws.get(next).is_some_and(|draw| self.span_s(day, *draw).1 <= from_s) {
             next += 1;
         }
         head[NEXT] = next as f64;
         let mut covered_s = from_s;
-        for &[begin_s, end_s, flow_m3_s, kind] in &draws[next..] {
+        for &draw in &draws[next..] {
+            let (begin_s, end_s) = self.span_s(day, draw);
             if begin_s >= until_s {
                 break;
             }
             let length_s = end_s.min(until_s) - begin_s.max(from_s);
             if length_s > 0.0 {
-                drawn.volume_m3 += flow_m3_s * length_s;
-                drawn.kinds_m3[kind as usize] += flow_m3_s * length_s;
+                let volume_m3 = self.flow_m3_s(day, draw) * length_s;
+                drawn.volume_m3 += volume_m3;
+                drawn.kinds_m3[kind_of(draw)] += volume_m3;
                 let end_s = end_s.min(until_s);
                 drawn.drawing_s += (end_s - begin_s.max(covered_s)).max(0.0);
                 covered_s = covered_s.max(end_s);
@@ -216,6 +227,17 @@ impl Draws {
         }
         drawn
     }
+}
+
+/// The kind of a draw.
+fn kind_of(draw: f64) -> usize {
+    (draw as u64 / PER_KIND) as usize
+}
+
+/// Index of the first random number of a draw.
+fn index_of(draw: f64) -> u64 {
+    let draw = draw as u64;
+    draw - draw % PER_KIND + 10 + 2 * (draw % PER_KIND)
 }
 
 /// The time of day up to which a share of the volume is drawn, s.
