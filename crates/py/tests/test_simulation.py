@@ -1,4 +1,5 @@
 import pickle
+from pathlib import Path
 
 import anergy
 import pytest
@@ -138,6 +139,13 @@ def test_snapshot_continues_bit_for_bit(model, sim):
         other.set(SPEED, 0.85)
         other.step(200)
         assert repr(row(other)) == repr(expected)
+
+
+def test_a_snapshot_of_a_house_is_small():
+    folder = Path(__file__).parents[3] / "examples/laboratory-sf1"
+    sim = anergy.Model.from_file(folder / "model.toml").simulation(step_s=60.0)
+    sim.advance(86400)
+    assert len(sim.snapshot().to_bytes()) < 2000
 
 
 def test_snapshots_that_do_not_fit(model, sim):
