@@ -75,7 +75,7 @@ role = "compare"
 class = "pt100_a"
 "#;
 
-/// One hour, a reading every 10 s: water at 47 degC, from the middle on at 62 degC; 0.2 kg/s, in the third quarter 0.1 kg/s, in
+/// One hour, a reading every 10 s: water at 47 degC, from the middle on within 2 min at 62 degC; 0.2 kg/s, in the third quarter 0.1 kg/s, in
 /// the last 2 min nothing.
 pub(crate) fn experiment(hidden: &[(Unknown, f64)]) -> Experiment {
     let times: Vec<f64> = (0..=360).map(|k| 10.0 * f64::from(k)).collect();
@@ -89,7 +89,7 @@ pub(crate) fn experiment(hidden: &[(Unknown, f64)]) -> Experiment {
         _ => 0.2,
     };
     let blank = track(&|_| 320.15);
-    let inlet = track(&|t| if t > 1800.0 { 335.15 } else { 320.15 });
+    let inlet = track(&|t| 320.15 + 15.0 * ((t - 1800.0) / 120.0).clamp(0.0, 1.0));
     let tracks = vec![inlet, track(&flow), blank.clone(), blank];
     let run = Run { name: String::new(), tracks, span_s: (0.0, 3600.0) };
     let model = Model::from_toml(MODEL, Path::new(".")).unwrap();

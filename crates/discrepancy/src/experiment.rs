@@ -54,7 +54,7 @@ pub struct Experiment {
     pub samples: Vec<Sample>,
     /// Smallest and largest value of the signal of every input.
     pub(crate) ranges: Vec<(f64, f64)>,
-    step: Time,
+    pub(crate) step: Time,
 }
 
 impl Experiment {

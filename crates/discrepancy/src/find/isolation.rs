@@ -122,7 +122,8 @@ impl Measured<'_> {
         for (run, measured) in experiment.runs.iter().enumerate() {
             let boundary = cuts.iter().zip(&flows).enumerate().map(|(i, (node, flow))| {
                 let times_s = times(measured);
-                let t_k = times_s.iter().map(|t| measured.tracks[self.t[node]].at(*t)).collect();
+                let water = &measured.tracks[self.t[node]];
+                let t_k = times_s.iter().map(|t| water.smooth_at(*t)).collect();
                 let values = match flow {
                     Some(flow) if i != held => {
                         times_s.iter().map(|t| flow.at(measured, *t)).collect()
@@ -130,7 +131,9 @@ impl Measured<'_> {
                     _ => vec![CUT_PA; times_s.len()],
                 };
                 let kind = if i == held { CutKind::Pressure } else { CutKind::Flow };
-                let times_s = times_s.iter().map(|t| t - measured.span_s.0).collect();
+                // A step takes its signals as they are at its end; of what is measured its middle counts.
+                let later_s = 0.5 * experiment.step.as_s() - measured.span_s.0;
+                let times_s = times_s.iter().map(|t| t + later_s).collect();
                 Cut { node: (*node).to_owned(), kind, times_s, values, t_k }
             });
             let isolated = model.isolate(part, &boundary.collect::<Vec<_>>()).ok()?;
