@@ -356,8 +356,8 @@ impl ThermalUnit for Combustion {
     }
 
     fn longest_step_s(&self, _ports: &[PortFlow], state: &[f64]) -> f64 {
-        let heat_w = self.main.map.at(1.0, state[RETURN_K]).heat_w;
         let longest_s = |content: EngineContent| {
+            let heat_w = self.main.map.at(1.0, state[RETURN_K]).heat_w;
             content.longest_step_s(state[self.engine_at()], heat_w, self.limits.supply_max_k)
         };
         self.engine.map_or(f64::INFINITY, longest_s)

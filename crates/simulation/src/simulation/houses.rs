@@ -293,3 +293,38 @@ impl Simulation {
         units.map(|unit| unit.equipment.stored_j(&self.state.unit_states[unit.state.clone()])).sum()
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::balance::summary;
+    use crate::build::build;
+    use crate::model::Model;
+    use std::path::Path;
+
+    #[test]
+    fn what_does_not_settle_is_said_once_and_counted() {
+        let text = "format = 1\n[run]\nstart = \"2023-02-13T00:00:00Z\"\n[weather]\nkind = \"synthetic\"\n\
+                    latitude_deg = 48.1\nlongitude_deg = 11.6\n[[house]]\nsite = \"h\"\ntype = \"SF4\"\n\
+                    connection = \"two_pipe\"\n";
+        let model = Model::from_toml(text, Path::new(".")).unwrap();
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        simulation.advance_to(Time::from_s(60.0).unwrap(), Time::from_s(60.0).unwrap()).unwrap();
+        assert!(summary(&simulation, false).get("unsettled").is_none());
+        let coupling = simulation.plan.circuits.len();
+        for settled in [true, false, true, false] {
+            simulation.note_settling(coupling, settled);
+        }
+        let said: Vec<Event> =
+            simulation.take_events().filter(|event| event.kind == "unsettled").collect();
+        let [event] = said.as_slice() else { panic!("{said:?}") };
+        assert!(event.message.contains("h.charging, h.mixing, h.storage_pipes"), "{event:?}");
+        assert_eq!(event.time, Time::from_s(60.0).unwrap());
+        let counted = &summary(&simulation, false)["unsettled"][0];
+        assert_eq!(
+            (counted["steps"].as_u64(), counted["circuits"].as_array().map(Vec::len)),
+            (Some(2), Some(3))
+        );
+    }
+}
