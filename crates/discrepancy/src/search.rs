@@ -33,7 +33,7 @@ const KEEPS: f64 = 2.0;
 /// Evidence within which two effects are not told apart, nats.
 const TOGETHER: f64 = 3.0;
 /// ... or this share of what the winner gains: no model is right to more than that.
-const NEARLY: f64 = 0.04;
+const NEARLY: f64 = 0.1;
 /// Effects whose residuals on samples that were not fitted are so many times those of the best, and take away so much less
 /// of the discrepancy there, are refuted.
 const AS_WELL: (f64, f64) = (2.0, 0.25);

@@ -132,12 +132,12 @@ mod tests {
     fn a_class_is_what_is_near_or_parallel_and_not_refuted() {
         let findings =
             [finding("A", 30.0), finding("B", 28.0), finding("C", 25.0), finding("D", 23.0)];
-        // 3 nats, or 4 % of 30 = 1.2; parallel ones within 6.
+        // 3 nats, or 10 % of 30 = 3; parallel ones within 6.
         assert_eq!(ids(&class(&findings, &[true, false, false, false])), ["A", "B"]);
         assert_eq!(ids(&class(&findings, &[true, false, true, true])), ["A", "B", "C"]);
         let refuted = Finding { probability: 0.0, ..finding("B", 28.0) };
         assert_eq!(ids(&class(&[finding("A", 30.0), refuted], &[true, true])), ["A"]);
-        // 4 % of 300 = 12.
+        // 10 % of 300 = 30.
         assert_eq!(
             ids(&class(&[finding("A", 300.0), finding("B", 290.0)], &[true, false])),
             ["A", "B"]
