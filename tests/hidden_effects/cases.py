@@ -18,7 +18,7 @@ import broken
 from detect import Look, shifted, slow, stratum
 from sensors import ROOT3, draw, measure, spoil
 
-RIGS = {"R1": "rig1", "R3": "rig3"}
+RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
 # Range of the expected gain in log-likelihood that is aimed at.
 STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
 # Nats within which two effects are not told apart, and cosine of their signatures.
@@ -34,18 +34,21 @@ def still(m_flow, at_s):
 class Draw:
     """A rig with its experiment: what each effect would show, from the truth with and without it."""
 
-    def __init__(self, module, seed, rich):
+    def __init__(self, module, seed, rich, **kind):
         self.module, self.seed = module, seed
         self.rng = np.random.default_rng(seed)
-        self.rig = module.draw(self.rng, rich)
+        self.rig = module.draw(self.rng, rich) | kind
         self.sensors = module.sensors(self.rig)
         self.at_s = np.arange(0, module.duration_s(self.rig), self.rig["every_s"])
         self.neutral = module.neutral(self.rig)
         self.plant = list(module.effects(self.rig))
         inputs = [s for s in self.sensors if s.role == "input" and s.truth in module.INPUTS]
         tolerances = module.tolerances(self.rig)
+        plain = module.simulate(self.rig, [self.neutral])
+        # An offset and a gain of each input that are small but visible.
+        offset = {s.truth: 0.5 if s.kind == "k" else 0.02 * np.mean(plain[s.truth]) for s in inputs}
         variants = [{}] + [{k: self.neutral[k] + half} for k, half in tolerances.items()]
-        variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((0.5, 1.0), (0.0, 1.02))]
+        variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((offset[s.truth], 1.0), (0.0, 1.02))]
         variants += [variant(look) for _, _, _, variant, look, _, _ in self.plant]
         channels = module.simulate(self.rig, [self.neutral | v for v in variants])
         look = self.look = Look(self.sensors, channels, self.at_s)
@@ -53,7 +56,7 @@ class Draw:
             _, _, noise = s.limits(channels[s.truth][0])
             first = 1 + len(tolerances) + 2 * j
             if s.kind == "k":
-                look.noisier(look.of(channels, first) / 0.5, np.hypot(noise, s.resolution_si() / 12**0.5))
+                look.noisier(look.of(channels, first) / offset[s.truth], np.hypot(noise, s.resolution_si() / 12**0.5))
             else:
                 mean = np.mean(channels[s.truth][0])
                 look.noisier(look.of(channels, first + 1) / 0.02, np.hypot(noise, s.resolution_si() / 12**0.5) / mean)
@@ -64,7 +67,7 @@ class Draw:
         self.effects = []  # id, component, parameter, neutral, first look, range, variant or None, signature
         for s in inputs:
             bias, gain, _ = s.limits(channels[s.truth][0])
-            by_bias, by_gain = -look.of(channels, k) / 0.5, -look.of(channels, k + 1) / 0.02
+            by_bias, by_gain = -look.of(channels, k) / offset[s.truth], -look.of(channels, k + 1) / 0.02
             k += 2
             look.tolerate(by_bias, bias / ROOT3)
             look.tolerate(by_gain, gain / ROOT3)
@@ -90,6 +93,11 @@ class Draw:
             self.effects.append((id_, component, parameter, zero, first, range_, variant, look.of(channels, k)))
             k += 1
         look.ready()
+
+    def near(self, component):
+        """What has nothing between it and this component."""
+        pairs = self.module.beside(self.rig)
+        return sorted({component} | {b for a, b in pairs if a == component} | {a for a, b in pairs if b == component})
 
     def of_strength(self, effect, wanted, rng):
         """Value of an effect so that it gains about `wanted`."""
@@ -118,7 +126,7 @@ class Draw:
             return self.look.of_sensor(sensor, slow(value) if effect[0] == "S4" else shifted(value))
         return effect[-1] * (value - effect[3]) / (effect[4] - effect[3])
 
-    def together(self, effect, signature):
+    def together(self, effect, signature, parallel=PARALLEL):
         """The effects that these data do not tell from this one."""
         gain = self.look.gain(signature)
         same = [effect[:2]]
@@ -127,7 +135,7 @@ class Draw:
             # The other one, as strong as it has to be, must be possible.
             need = (other[4] - other[3]) * self.look.inner(signature, other[-1]) / max(self.look.inner(other[-1], other[-1]), 1e-12)
             possible = other[5][0] <= other[3] + need <= other[5][1]
-            if other[:2] != effect[:2] and possible and (gain * (1 - c * c) < TOGETHER or c > PARALLEL):
+            if other[:2] != effect[:2] and possible and (gain * (1 - c * c) < TOGETHER or c > parallel):
                 same.append(other[:2])
         return [list(x) for x in same]
 
@@ -222,7 +230,8 @@ def case_set(d, out, counts, tag):
             e, value, signature = found
             a = add("single", effects=[(e, value)])
             a |= {"effects": [{"id": e[0], "component": e[1], "parameter": e[2], "value": value}], "stratum": stratum_,
-                  "gain": d.gain(e, value), "class": d.together(e, signature)}
+                  "gain": d.gain(e, value), "class": d.together(e, signature), "strict": d.together(e, signature, parallel=1.0),
+                  "near": d.near(e[1]), "untouched": d.look.untouched(signature)}
     for _ in range(counts["pair"]):
         first, second = effect("easy"), None
         if first:

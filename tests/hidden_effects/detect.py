@@ -67,6 +67,11 @@ class Look:
     def gain(self, r):
         return 0.5 * self.inner(r, r)
 
+    def untouched(self, r):
+        """Sensors that hardly see it: below a twentieth of their noise on average."""
+        each = r.reshape(len(self.sensors), -1)
+        return [s.column for s, x in zip(self.sensors, each) if np.sqrt(np.mean(x**2)) < 0.05]
+
     def cosine(self, a, b):
         return abs(self.inner(a, b)) / max(np.sqrt(self.inner(a, a) * self.inner(b, b)), 1e-12)
 

@@ -13,6 +13,7 @@ from sensors import TEMPERATURE, Sensor
 NAME = "R3"
 BLOCK_S, BLOCKS = 300.0, 12
 FIRST_S = 280  # until the water that was there at the start has left
+AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 AS_BUILT = {"P1"}
 ONE_SIDED = {"P5", "P7", "P8", "S4"}
@@ -180,6 +181,8 @@ def effects(rig):
         yield "P5", n, "factor", (lambda x, n=n: {f"{n}.standstill": x}), 2.5, (0.2, 5.0), 1.0
         yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.08, (0.7, 1.3), 1.0
         yield "P8", n, "factor", (lambda x, n=n: {f"{n}.friction": x}), 1.3, (0.5, 5.0), 1.0
+    for k in (1, 2) if rig.get("heads") else ():  # explain does not know it
+        yield "H3", f"pump{k}", "factor", (lambda x, k=k: {f"head{k}": x}), 0.92, (0.7, 1.3), 1.0
 
 
 def unknown(rig, rng):
@@ -221,3 +224,10 @@ def split(rig):
 def is_show(rig, at_s):
     block = (at_s // BLOCK_S).astype(int)
     return (block % 4 == 3) & (at_s >= block * BLOCK_S + 40) & (at_s <= (block + 1) * BLOCK_S - 1)
+
+
+def beside(rig):
+    """Pairs of components and sensors with nothing between them."""
+    meets = {"j1": ["stub1", "line12", "T_j1"], "j2": ["line12", "stub2", "line23"], "j3": ["line23", "T_3", "m_3", "kappa_3"], "b1": ["stub1", "T_1", "m_1", "n_1", "pump1"],
+             "b2": ["stub2", "T_2", "m_2", "n_2", "pump2"]}
+    return [(a, b) for group in meets.values() for a in group for b in group if a < b] + [("dp_12", "line12"), ("dp_23", "line23")]

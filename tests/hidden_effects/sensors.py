@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from numba import njit
 
 ROOT3 = 3**0.5
 # A value in SI as a reading.
-UNITS = {"degC": (1.0, -273.15), "K": (1.0, 0.0), "kg_h": (3600.0, 0.0), "l_min": (60.0, 0.0), "hPa": (0.01, 0.0),
+UNITS = {"degC": (1.0, -273.15), "K": (1.0, 0.0), "kg_h": (3600.0, 0.0), "l_h": (3.6e6, 0.0), "hPa": (0.01, 0.0),
          "kW": (1e-3, 0.0), "W": (1.0, 0.0), "1": (1.0, 0.0), "percent": (100.0, 0.0)}
 # Resolution, lag.
 TEMPERATURE = dict(unit="degC", quantisation=0.1)
@@ -29,7 +30,7 @@ class Sensor:
 
     @property
     def kind(self):
-        return {"degC": "k", "K": "k", "kg_h": "kg_s", "l_min": "m3_s", "hPa": "pa", "kW": "w", "W": "w"}.get(self.unit, "1")
+        return {"degC": "k", "K": "k", "kg_h": "kg_s", "l_h": "m3_s", "hPa": "pa", "kW": "w", "W": "w"}.get(self.unit, "1")
 
     def limits(self, y):
         """Largest permissible offset and gain error and the noise, SI, for true values `y`."""
@@ -73,6 +74,11 @@ def lagged(y, tau):
     """First order, samples of 1 s."""
     if tau <= 0:
         return y
+    return _lagged(np.ascontiguousarray(y, dtype=float), float(tau))
+
+
+@njit(cache=True)
+def _lagged(y, tau):
     out, keep = np.empty_like(y), np.exp(-1.0 / tau)
     state = y[0]
     # y is straight between its samples.
@@ -109,7 +115,7 @@ def measure(sensor, y, at_s, rng, clock_s=0.0, effect=None):
     _, _, noise = sensor.limits(y)
     x = sensor.draws["gain"] * effect.get("gain", 1.0) * x + sensor.draws["bias"] + effect.get("bias_k", 0.0)
     x = x + noise * rng.normal(size=x.size) + 0.5 * noise * pink(x.size, rng)
-    if sensor.kind == "kg_s":
+    if sensor.kind in ("kg_s", "m3_s"):
         x = np.where(np.interp(times, np.arange(y.size), y) < 1e-6, 0.0, x)  # low-flow cut-off
         x = np.maximum(x, 0.0)
     if sensor.kind == "1":

@@ -84,20 +84,6 @@ def captured(answer, result):
     return statistics.mean((b - a) / (b - f) for b, a, f in gaps) if gaps else None
 
 
-def untouched(answer):
-    """Sensors of which the hidden effect of a single case changes nothing."""
-    effect = answer["effects"][0]
-    id_, place = effect["id"], effect["component"]
-    columns = list(answer["oracle"])
-    if place in columns:
-        return [c for c in columns if c != place]
-    if id_ == "P8" and answer["rig"] == "R1":
-        return [c for c in columns if c != f"dp_{place}"]
-    if id_ in ("P1", "P2", "P3", "P5", "P7"):
-        return [c for c in columns if not c.startswith("T_")]
-    return []
-
-
 def metrics(answers, results):
     """Rows: metric, reached, target."""
     def of(kind, more=lambda a: True):
@@ -109,6 +95,9 @@ def metrics(answers, results):
     truth = {n: (a["effects"][0]["id"], a["effects"][0]["component"]) for n, a in known.items()}
     def right(n):
         return head(results[n]) in [tuple(x) for x in answers[n]["class"]]
+
+    def strictly(n):
+        return head(results[n]) in [tuple(x) for x in answers[n]["strict"]]
 
     def three(n):
         return list(dict.fromkeys([head(results[n])] + pairs_of(results[n].get("tried"))))[:3]
@@ -125,7 +114,7 @@ def metrics(answers, results):
 
     fitted = [x for n in answered if results[n].get("effects") and (x := parameter(n))]
     gaps = [x for n, a in answered.items() if right(n) and (x := captured(a, results[n])) is not None]
-    unaffected = [(n, c) for n, a in known.items() if named(results[n]) for c in untouched(a) if c in results[n]["show_rmse_before"]]
+    unaffected = [(n, c) for n, a in known.items() if named(results[n]) for c in a["untouched"] if c in results[n]["show_rmse_before"]]
     worse = [(n, c) for n, c in unaffected if results[n]["show_rmse_after"][c] > 1.02 * results[n]["show_rmse_before"][c]]
     error, brier, n_stated = ece({n: r for n, r in results.items() if n in answers}, right)
     sizes = [len(the_set(results[n])) for n in answered]
@@ -148,12 +137,15 @@ def metrics(answers, results):
         ("- at their edge", share(results[n]["verdict"] != "nothing" for n, a in nulls.items() if a["edge"]), ""),
         ("first name in the true class, of all medium and easy", share(right(n) for n in seen), ">= 90 %"),
         ("- of those with a name", share(right(n) for n in answered), ""),
+        ("first name in the class of 3 nats alone, of all medium and easy", share(strictly(n) for n in seen), ""),
         ("first name exactly right", share(head(results[n]) == truth[n] for n in seen), ">= 80 %"),
         ("truth among the first three", share(truth[n] in three(n) for n in detected), ">= 97 %"),
         ("truth in the set", share(truth[n] in the_set(results[n]) for n in answered), "93 to 98 %"),
         ("mean size of the set", f"{statistics.mean(sizes):.1f}" if sizes else "no case", "<= 2.2"),
         ("component right, rich", share(head(results[n])[1] == truth[n][1] for n, a in answered.items() if a["rich"] and head(results[n])), ">= 90 %"),
         ("component right, poor", share(head(results[n])[1] == truth[n][1] for n, a in answered.items() if not a["rich"] and head(results[n])), ">= 70 %"),
+        ("- or next to it, rich", share(head(results[n])[1] in a["near"] for n, a in answered.items() if a["rich"] and head(results[n])), ">= 97 %"),
+        ("- or next to it, poor", share(head(results[n])[1] in a["near"] for n, a in answered.items() if not a["rich"] and head(results[n])), ">= 90 %"),
         ("outside of the catalogue: unexplained or data problem", share(results[n]["verdict"] in ("unexplained", "data_problem") for n in unknown), ">= 80 %"),
         ("outside of the catalogue: wrongly named", share(named(results[n]) for n in unknown), "<= 10 %"),
         ("error of the parameter, median", f"{100 * statistics.median(x for x, _ in fitted):.1f} % ({len(fitted)} cases)" if fitted else "no case", "<= 10 %"),

@@ -34,6 +34,7 @@ pub enum Class {
     /// Magnetic-inductive flow meter: 0.5 %, and 1 mm/s of zero offset (taken as 0.2 % of the largest flow).
     Mid,
     /// Flow sensor of a heat meter, class 2: 2 %.
+    #[serde(rename = "flow_class_2", alias = "flow_class2")]
     FlowClass2,
     /// Contact sensor on a wall: 1 K.
     Surface,

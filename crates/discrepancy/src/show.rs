@@ -1,6 +1,7 @@
 //! What was found, for people and for programs: `report.json`, `report.md`, `report.html`.
 
 mod html;
+mod map;
 
 pub use html::html;
 

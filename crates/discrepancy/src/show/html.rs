@@ -1,6 +1,6 @@
 //! `report.html`: one file with figures.
 
-use super::{EXPECTED, shown_additions, times, upper, value};
+use super::{EXPECTED, map, shown_additions, times, upper, value};
 use crate::experiment::Experiment;
 use crate::explain::{Explanation, Finding};
 use crate::split::Use;
@@ -16,7 +16,8 @@ const BOTTOM: f64 = 36.0;
 /// `report.html`: one file, figures of every compared sensor and run.
 pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> String {
     let mut out = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title><style>\n{STYLE}</style></head><body>\n<h1>{title}</h1>\n<p class=\"verdict\"><strong>{}</strong> {}.</p>\n",
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title><style>\n{STYLE}{}</style></head><body>\n<h1>{title}</h1>\n<p class=\"verdict\"><strong>{}</strong> {}.</p>\n",
+        map::STYLE,
         explanation.verdict.sentence(),
         escape(&upper(&explanation.because)),
         title = escape(title),
@@ -38,6 +39,7 @@ pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> 
         let _ = writeln!(out, "<p>What would tell them apart:</p><ul>{items}</ul>");
         next_measurements(&mut out, explanation);
     }
+    map::map(&mut out, experiment, explanation);
     if !explanation.curves.before.is_empty() {
         out.push_str("<h2>Measured, before and after</h2>\n<p class=\"legend\"><span class=\"measured\">measured</span> <span class=\"before\">model as it is</span> <span class=\"after\">with the effects</span> <span class=\"shown\">shaded: neither fitted nor used to choose</span></p>\n");
         for (run, measured) in experiment.runs.iter().enumerate() {
@@ -228,7 +230,7 @@ fn nice(step: f64) -> f64 {
         }
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
