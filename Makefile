@@ -36,7 +36,7 @@ python: $(VENV)/.installed ## Build the Python package into a private environmen
 
 test-python: python ## Python tests, stub check and examples
 	cargo build --workspace --bin anergy
-	ANERGY_PROGRAM=$(CURDIR)/target/debug/anergy $(BIN)/python -m pytest -q crates/py
+	ANERGY_PROGRAM=$(CURDIR)/target/debug/anergy $(BIN)/python -m pytest -q crates/py tests/hidden_effects
 	$(BIN)/python -m mypy.stubtest anergy --mypy-config-file crates/py/pyproject.toml
 	$(BIN)/python -m mypy --config-file crates/py/pyproject.toml crates/py/python/anergy crates/py/tests/typed_use.py
 	$(BIN)/python examples/three-houses/run.py

@@ -112,7 +112,8 @@ class Draw:
             return float(low * (rng.choice([-1, 1]) if id_ == "S7" else 1))
         share = np.sqrt(wanted / max(self.look.gain(signature), 1e-9))
         sign = rng.choice([-1, 1]) if lo < zero < hi and id_ not in self.module.ONE_SIDED else 1
-        return float(np.clip(zero + sign * share * (first - zero), lo, hi))
+        size = max(share * abs(first - zero), getattr(self.module, "SMALLEST", {}).get(id_, 0.0) * rng.uniform(1, 1.5))
+        return float(np.clip(zero + sign * np.sign(first - zero) * size, lo, hi))
 
     def gain(self, effect, value):
         gain = self.look.gain(self.seen(effect, value))

@@ -1,5 +1,5 @@
 """R2: a house. A storage with ten sensors, heat drawn from it, and two gas boilers in a two-pipe connection or an air-source heat pump
-(`house.py`). Rich: all sensors of the storage, flows, temperatures, fuel or electricity. Poor: heat meters, and two sensors on the wall of the storage.
+(`house.py`). Rich: ten sensors on the wall of the storage, flows, temperatures, fuel or electricity. Poor: heat meters, and two sensors of the storage.
 """
 
 import numpy as np
@@ -13,6 +13,8 @@ FIRST_S = 240
 AGREES_K = 0.25  # with anergy, median, where nothing is hidden
 AS_BUILT = set()
 ONE_SIDED = {"T3", "T4", "G4", "H1", "H2", "S4"}
+# So much an effect is at least: less is the tolerance of another unit of the same kind.
+SMALLEST = {"T1": 0.3, "T2": 0.7, "T3": 0.06, "T4": 0.06, "G1": 0.03, "G2": 0.05, "G3": 0.2, "G6": 0.03}
 LAYERS = 20  # of the model
 DENSITY = house.DENSITY
 LITRE_MIN = 1 / 60000.0
@@ -138,8 +140,7 @@ def sensors(rig):
             every += [Sensor(f"F_{name}", f"{name}.water.m_flow_kg_s", "compare", "mid", "kg_h", f"m_{name}", quantisation=1.0) for name in ("small", "large")]
     for k in range(10):
         if rich or k in (1, 8):
-            every.append(Sensor(f"TS{k + 1}", f"storage.t_{2 * k + 1}_k", "compare", "pt100_a" if rich else "surface", "degC", f"ts{k + 1}", quantisation=0.1,
-                                lag_s=0.0 if rich else 60.0))
+            every.append(Sensor(f"TS{k + 1}", f"storage.t_{2 * k + 1}_k", "compare", "surface", "degC", f"ts{k + 1}", quantisation=0.1, lag_s=60.0))
     return every
 
 
