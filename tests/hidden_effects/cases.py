@@ -176,7 +176,7 @@ def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
         table[s.column] = measure(s, channels[s.truth][0], d.at_s, rng, clocks[s.clock], by_sensor.get(s.column))
         if s.blank:
             table[s.column][still(channels[s.blank][0], d.at_s)] = np.nan
-    spoil(table, d.at_s, rng, plain=spoiler is not None)
+    spoil(table, {s.column for s in sensors if s.role == "input"}, d.at_s, rng, plain=spoiler is not None)
     note = spoiler(table, sensors, d.at_s, rng) if spoiler else None
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(module.model(rig))

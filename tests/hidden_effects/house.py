@@ -23,6 +23,13 @@ def boiler_heat(full_w, load, t_return):
 
 
 @njit(cache=True)
+def from_metal_w_k(m):
+    """Heat into the water per kelvin between metal and entering water: not more than the water can take up."""
+    c = m * HEAT_CAPACITY
+    return c * (1.0 - np.exp(-METAL_W_K / c))
+
+
+@njit(cache=True)
 def part_load(load, at_40):
     """Factor on the efficiency: 1 at full load, straight between its points."""
     d = at_40 - 1.0
@@ -86,7 +93,7 @@ def two_boilers(p, flow, t_ret, load_a, load_b, shape, out):
         t_supply_guess = t_high if m_storage < 0 else t_back
         if m_a < 0:
             # Only what the other boiler sends.
-            t_supply_guess = t_back + (METAL_W_K * (metal[1] - t_back) / (m_b * HEAT_CAPACITY) if m_b > 0 else 0.0)
+            t_supply_guess = t_back + (from_metal_w_k(m_b) * (metal[1] - t_back) / (m_b * HEAT_CAPACITY) if m_b > 0 else 0.0)
         sum_back += max(-m_a, 0.0) * t_supply_guess
         if into > 1e-9:
             t_back = sum_back / into
@@ -94,10 +101,10 @@ def two_boilers(p, flow, t_ret, load_a, load_b, shape, out):
         for k in range(2):
             m = (m_a, m_b)[k]
             if m > 1e-9:
-                q = METAL_W_K * (metal[k] - t_back)
+                q = from_metal_w_k(m) * (metal[k] - t_back)
                 t_out[k] = t_back + q / (m * HEAT_CAPACITY)
                 slower = p[17 + k] if loads[k] > 0 and run[k] < 6 * START_S * p[17 + k] else 1.0
-                metal[k] += (burn[k] - q) / (METAL_W_K * START_S * slower)
+                metal[k] += (burn[k] - q) / (from_metal_w_k(p[11 + k]) * START_S * slower)
             else:
                 t_out[k] = t_back
                 metal[k] += (t_back - metal[k]) / 3600.0

@@ -127,12 +127,14 @@ def measure(sensor, y, at_s, rng, clock_s=0.0, effect=None):
     return x
 
 
-def spoil(table, at_s, rng, plain=False):
+def spoil(table, inputs, at_s, rng, plain=False):
     """2 % of all readings missing, one gap of all columns, now and then a column that holds its value for a while."""
     n = at_s.size
-    for x in table.values():
+    for name, x in table.items():
+        first = x[0]
         x[rng.random(n) < 0.02] = np.nan
-        x[0] = x[0] if np.isfinite(x[0]) else x[np.isfinite(x)][0]
+        if name in inputs:
+            x[0] = first
     if plain:
         return
     start = int(rng.uniform(0.2, 0.8) * n)
