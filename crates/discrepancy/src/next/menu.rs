@@ -182,7 +182,7 @@ fn changed(experiment: &Experiment, run: &Run, program: Program) -> Option<Run> 
                 }
             }
             Program::Hold => {
-                *track = held(track, middle_s, is_flow(sensor), sensor.role == Role::Compare)
+                *track = held(track, middle_s, is_flow(sensor), sensor.role == Role::Compare);
             }
             _ => {}
         }

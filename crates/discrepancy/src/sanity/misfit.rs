@@ -81,8 +81,8 @@ impl Column {
         let (first, last) =
             (t.partition_point(|t| *t < from_s), t.partition_point(|t| *t < until_s));
         let (mut sum, mut count) = (0.0, 0.0);
-        for i in first..last {
-            if let Some(x) = between(simulated, t[i] + ahead_s, APART * self.interval_s) {
+        for (i, time_s) in t.iter().enumerate().take(last).skip(first) {
+            if let Some(x) = between(simulated, time_s + ahead_s, APART * self.interval_s) {
                 let z = (self.measured.value[i] - x) / self.sigma[i];
                 (sum, count) = (sum + (z * z).ln_1p(), count + 1.0);
             }
