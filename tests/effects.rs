@@ -70,6 +70,8 @@ fn subject(id: &str) -> (&'static str, &'static str) {
 /// The neutral values of every effect.
 fn neutral(id: &str) -> Value {
     match id {
+        "P4" => json!({ "capacity_j_m_k": 0.0, "share": 0.5 }),
+        "P6" => json!({ "volume_m3": 0.0 }),
         "P1" => json!({ "wall_capacity_j_m_k": 0.0, "film_factor": 1.0 }),
         "P7" => json!({ "dispersion_m2_s": 0.0 }),
         "H1" => json!({ "opening": 0.0 }),
@@ -226,6 +228,53 @@ fn dispersion_blurs_the_front() {
         (passes(&blurred, 20.0 + 0.159 * 40.0), passes(&blurred, 20.0 + 0.841 * 40.0));
     assert!(((late - early) / 46.9 - 1.0).abs() < 0.08, "{early} {late}");
     assert!((passes(&blurred, 40.0) - 380.1).abs() < 4.0, "{}", passes(&blurred, 40.0));
+}
+
+#[test]
+fn a_missing_piece_delays_without_friction_or_loss() {
+    // 10 l at 0.1 kg/s are 100 s: the middle of the front is at the outlet at 380.1 + 100 = 480.1 s. The water is as warm, and the
+    // pressure loss that of the pipe.
+    let cold = PIPE.replace("initial_degc = 60", "initial_degc = 20");
+    let arrives_s = |effect: &str| {
+        let model = Model::from_toml(&format!("{cold}{effect}"), Path::new(".")).unwrap();
+        let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+        let outlet = simulation.channel("out.t_k").unwrap();
+        let second = Time::from_s(1.0).unwrap();
+        let mut warm = |s: u32| {
+            simulation.advance_to(Time::from_s(f64::from(s)).unwrap(), second).unwrap();
+            simulation.get(outlet) > 310.0
+        };
+        f64::from((0..700).find(|s| warm(*s)).unwrap())
+    };
+    let piece = "[[effect]]\nid = \"P6\"\ncomponent = \"pipe\"\nvolume_l = 10\n";
+    let (before, after) = (arrives_s(""), arrives_s(piece));
+    assert!((after - before - 100.0).abs() < 1.5, "{before} {after}");
+    let with = steady::solve(&model(piece)).unwrap();
+    assert!(with.edge("pipe.piece").unwrap().dp_pa < 1e-3 * dp_pa(&model("")));
+    let (with_k, before_k) = (outlet_degc(&model(piece)), outlet_degc(&model("")));
+    assert!((with_k - before_k).abs() < 1e-6, "{with_k} {before_k}");
+}
+
+#[test]
+fn the_ground_takes_heat_up_before_the_loss_is_steady() {
+    // Half of 2 K m/W lies before the ground, still at 10 degC: 10 + 50 exp(-100/(1 * 0.1 * 4180)) = 49.361 degC when the front has just
+    // passed. The node has 100 kJ/(m K) and follows within 1e5/(1 + 1) = 50000 s; then 54.364 degC, as without it.
+    let text = PIPE.replace("initial_degc = 60", "initial_degc = 10");
+    let effect = "[[effect]]\nid = \"P4\"\ncomponent = \"pipe\"\ncapacity_j_m_k = 1e5\n";
+    let model = Model::from_toml(&format!("{text}{effect}"), Path::new(".")).unwrap();
+    let mut simulation = Simulation::new(build(&model).unwrap()).unwrap();
+    let outlet = simulation.channel("pipe.t_b_k").unwrap();
+    let mut degc = |s: f64| {
+        let step = Time::from_s(10.0).unwrap();
+        simulation.advance_to(Time::from_s(s).unwrap(), step).unwrap();
+        simulation.get(outlet) - 273.15
+    };
+    assert!((degc(500.0) - 49.361).abs() < 0.1, "{}", degc(500.0));
+    assert!((degc(400_000.0) - 54.364).abs() < 0.02, "{}", degc(400_000.0));
+    let settled = outlet_degc(&self::model(effect));
+    // The node has one temperature along the pipe: 0.1 % less loss where the water cools by a tenth.
+    let loss_share = (60.0 - settled) / (60.0 - outlet_degc(&self::model("")));
+    assert!((loss_share - 0.999).abs() < 2e-4, "{loss_share}");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! accuracy class of the sensor or the knowledge of the component allows; where its effect is tried, the wide range
 //! takes the place of the tolerance.
 
+mod hydraulics;
 mod pipes;
 mod sensors;
 mod units;
@@ -21,6 +22,7 @@ struct Group {
 
 const GROUPS: &[Group] = &[
     Group { candidates: pipes::candidates, tolerances: pipes::tolerances },
+    Group { candidates: hydraulics::candidates, tolerances: hydraulics::tolerances },
     Group { candidates: units::candidates, tolerances: units::tolerances },
     Group { candidates: sensors::candidates, tolerances: sensors::tolerances },
 ];

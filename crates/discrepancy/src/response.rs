@@ -1,10 +1,13 @@
 //! What a sensor makes of its quantity.
 //!
 //! **Equation** `y(t) = g x(t + clock) + b + drift s + step [s > s_step]`, `s` the share of the run that is over, behind a
-//! first-order lag where it has one.
+//! first-order lag where it has one. The step takes a fiftieth of the run, so that its moment can be fitted.
 
 use crate::data::Track;
 use crate::unknown::Target;
+
+/// Share of a run that a step takes.
+const STEP_TAKES: f64 = 0.02;
 
 /// The response of one sensor.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,8 +57,8 @@ impl Response {
 
     fn offset(&self, time_s: f64, span_s: (f64, f64)) -> f64 {
         let share = ((time_s - span_s.0) / (span_s.1 - span_s.0).max(1e-9)).clamp(0.0, 1.0);
-        let stepped = if share > self.step_share { self.step } else { 0.0 };
-        self.bias + self.drift * share + stepped
+        let stepped = ((share - self.step_share) / STEP_TAKES + 0.5).clamp(0.0, 1.0);
+        self.bias + self.drift * share + self.step * stepped
     }
 }
 

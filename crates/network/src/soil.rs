@@ -91,6 +91,21 @@ impl SoilRings {
         Self { edge, first, rings, capacity_j_k, outwards_w_k, inwards_w_k }
     }
 
+    /// One node of a heat capacity per length; `between_k_m_w` are the thermal resistances from the water to it, and from it to the ground.
+    pub fn node(
+        edge: EdgeId,
+        first: usize,
+        length_m: f64,
+        capacity_j_m_k: f64,
+        [inside_k_m_w, outside_k_m_w]: [f64; 2],
+    ) -> Self {
+        let (mut capacity_j_k, mut outwards_w_k) = ([0.0; MOST_RINGS], [0.0; MOST_RINGS]);
+        capacity_j_k[0] = capacity_j_m_k * length_m;
+        outwards_w_k[0] = length_m / outside_k_m_w;
+        let inwards_w_k = length_m / inside_k_m_w;
+        Self { edge, first, rings: 1, capacity_j_k, outwards_w_k, inwards_w_k }
+    }
+
     /// Number of rings.
     pub fn count(&self) -> usize {
         self.rings

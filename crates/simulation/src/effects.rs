@@ -1,12 +1,14 @@
 //! REGISTRY of the effects: adding one is one file, its `mod` line and its line below.
 
 mod auxiliary;
+mod dead_leg;
 mod dead_volume;
 mod defrosting;
 mod dispersion;
 mod efficiency;
 mod fouling;
 mod friction;
+mod ground_capacity;
 mod inlet_jet;
 mod insulation;
 mod leak;
@@ -32,7 +34,9 @@ anergy_core::registry! {
         Wall("P1", wall::Wall, wall::Wall),
         Insulation("P2", insulation::Insulation, insulation::Insulation),
         Surroundings("P3", surroundings::Surroundings, surroundings::Surroundings),
+        GroundCapacity("P4", ground_capacity::GroundCapacity, ground_capacity::GroundCapacity),
         Standstill("P5", standstill::Standstill, standstill::Standstill),
+        DeadLeg("P6", dead_leg::DeadLeg, dead_leg::DeadLeg),
         Dispersion("P7", dispersion::Dispersion, dispersion::Dispersion),
         Friction("P8", friction::Friction, friction::Friction),
         Length("P10", length::Length, length::Length),

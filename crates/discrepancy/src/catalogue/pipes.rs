@@ -4,8 +4,8 @@ use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
 use anergy_network::elements::ElementParams;
-use anergy_network::elements::pipe::PipeParams;
 use anergy_network::elements::pipe::thermal::WallModel;
+use anergy_network::elements::pipe::{Laying, PipeParams};
 use anergy_simulation::model::Model;
 use std::f64::consts::PI;
 
@@ -20,6 +20,11 @@ const FRICTION: f64 = 0.02 / ROOT3;
 const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// Wall of a pipe whose outer diameter is not known, m.
 const WALL_M: f64 = 0.003;
+
+/// The ground answers in hours: a shorter run shows nothing of it, s.
+const LONG_S: f64 = 6.0 * 3600.0;
+/// A missing piece over the content of the pipe: middle and standard deviation.
+const PIECE: (f64, f64) = (0.2, 0.15);
 
 fn pipes(model: &Model) -> impl Iterator<Item = (&str, &PipeParams)> {
     model.edges.iter().filter_map(|edge| match &edge.params {
@@ -52,9 +57,24 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let (heat, pressure) = (sensed(experiment, "k"), sensed(experiment, "pa"));
+    let longest_s = experiment.runs.iter().map(|run| run.span_s.1 - run.span_s.0);
+    let longest_s = longest_s.fold(0.0, f64::max);
     for (component, pipe) in pipes(&experiment.model) {
         if heat {
             of_heat(component, pipe, all);
+            if longest_s > LONG_S && lies_alone(&experiment.model, component, pipe) {
+                all.push(Candidate::effect(
+                    "P4",
+                    component,
+                    "heat capacity of the ground around the pipe",
+                    ("capacity_j_m_k", "J/(m K)"),
+                    |target| Unknown::between(target, 1e4, 5e5),
+                    "hours at one temperature after a step",
+                ));
+            }
+            if pauses(experiment) {
+                of_missing_piece(component, pipe, all);
+            }
         }
         if pressure {
             let friction = Candidate::effect(
@@ -68,6 +88,40 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             all.push(friction.tolerated(0.0, FRICTION));
         }
     }
+}
+
+/// Whether a measured flow rests at times.
+fn pauses(experiment: &Experiment) -> bool {
+    let flows = experiment.sensors.sensor.iter().enumerate();
+    let mut flows = flows.filter(|(_, sensor)| ["kg_s", "m3_s"].contains(&sensor.si().as_str()));
+    flows.any(|(k, _)| experiment.runs.iter().any(|run| run.tracks[k].value.contains(&0.0)))
+}
+
+/// Whether the ground around a pipe can be one node: no rings, no companion, a heat loss.
+fn lies_alone(model: &Model, component: &str, pipe: &PipeParams) -> bool {
+    let beside = |other: &PipeParams| other.companion.as_deref() == Some(component);
+    let warms = pipe.insulation_resistance_k_m_w.is_some() || pipe.laying.is_some();
+    let alone = pipe.soil_rings.is_none() && pipe.ground_capacity_j_m_k.is_none();
+    warms
+        && alone
+        && pipe.companion.is_none()
+        && pipe.spacing_m.is_none()
+        && pipe.laying != Some(Laying::Twin)
+        && !pipes(model).any(|(_, other)| beside(other))
+}
+
+fn of_missing_piece(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
+    let content_m3 = 0.25 * PI * pipe.inner_diameter_m.powi(2) * pipe.length_m;
+    let piece = Candidate::effect(
+        "P6",
+        component,
+        "a piece that the plan does not show",
+        ("volume_m3", "m3"),
+        |target| Unknown::plain(target, PIECE.0 * content_m3, PIECE.1 * content_m3),
+        "two flow rates and the pressure loss, or the volume until warm water arrives",
+    );
+    // Water that is not in the plan is a wrong length.
+    all.push(piece.tolerated(0.0, LENGTH * content_m3));
 }
 
 fn of_heat(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {

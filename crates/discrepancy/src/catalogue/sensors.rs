@@ -6,6 +6,10 @@ use crate::sensors::Role;
 use crate::uncertainty::{interval_s, jitter_s};
 use crate::unknown::{Target, Unknown};
 
+/// A temperature may drift or jump by so much (95 %), K.
+const DRIFT_K: f64 = 5.0;
+/// Offset of a flow meter (95 %) and its least tolerance, over its largest reading.
+const ZERO: (f64, f64) = (0.03, 0.001);
 /// What the first readings may say too little of the water at the start, at least, K.
 const FIRST_K: f64 = 0.3;
 
@@ -68,8 +72,8 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let loggers = loggers(experiment);
     for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
         let accuracy = experiment.accuracy[i];
-        let mut add = |id, words, parameter, unknown, tolerance, separates| {
-            let (component, beside) = (sensor.column.clone(), Vec::new());
+        let mut with = |id, words, parameter, unknown, beside, tolerance, separates| {
+            let component = sensor.column.clone();
             all.push(Candidate {
                 id,
                 component,
@@ -80,6 +84,46 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 tolerance,
                 separates,
             });
+        };
+        let flow = match sensor.si().as_str() {
+            "kg_s" => Some("offset_kg_s"),
+            "m3_s" => Some("offset_m3_s"),
+            _ => None,
+        };
+        if sensor.si() == "k" {
+            let (known, reference) = (Some((0.0, accuracy.bias)), "a reference beside the sensor");
+            let drift = Unknown::plain(Target::Drift(i), 0.0, DRIFT_K / 1.96);
+            with(
+                "S3",
+                "drift of the sensor",
+                ("drift_k", "K"),
+                drift,
+                Vec::new(),
+                known,
+                reference,
+            );
+            // A jump may be anywhere: three beginnings. Each is a simulation where the sensor drives the model.
+            let beginnings: &[f64] =
+                if sensor.role == Role::Compare { &[0.25, 0.5, 0.75] } else { &[] };
+            for share in beginnings {
+                let jump = Unknown::plain(Target::Step(i), 0.0, DRIFT_K / 1.96);
+                let moment = Unknown::plain(Target::StepShare(i), 0.5, 0.3).starting_at(*share);
+                let words = "jump of the sensor";
+                with("S3", words, ("step_k", "K"), jump, vec![moment], known, reference);
+            }
+        }
+        if let Some(field) = flow {
+            let readings = experiment.runs.iter().flat_map(|run| &run.tracks[i].value);
+            let largest = readings.fold(0.0_f64, |most, y| most.max(y.abs()));
+            let unit = if field == "offset_kg_s" { "kg/s" } else { "m3/s" };
+            let offset = Unknown::plain(Target::Bias(i), 0.0, ZERO.0 * largest / 1.96);
+            let known = Some((0.0, accuracy.bias.max(ZERO.1 * largest)));
+            let separates = "the reading behind a closed valve";
+            let words = "zero offset of the flow meter";
+            with("S8", words, (field, unit), offset, Vec::new(), known, separates);
+        }
+        let mut add = |id, words, parameter, unknown, tolerance, separates| {
+            with(id, words, parameter, unknown, Vec::new(), tolerance, separates);
         };
         if sensor.si() == "k" {
             add(

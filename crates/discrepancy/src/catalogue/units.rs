@@ -83,6 +83,15 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     }
 }
 
+/// Kinds whose pump feeds a circuit.
+const PUMPED: &[&str] = &[
+    "condensing_boiler",
+    "chp",
+    "stirling_chp",
+    AIR_SOURCE,
+    "brine_heat_pump",
+    "booster_heat_pump",
+];
 /// Kinds that burn gas.
 const BURNERS: &[&str] = &["condensing_boiler", "chp", "stirling_chp"];
 const AIR_SOURCE: &str = "air_source_heat_pump";
@@ -93,7 +102,7 @@ fn feeds(experiment: &Experiment, through: &[impl AsRef<str>]) -> bool {
     let generator = |name: &str| {
         let mut units = experiment.model.units.iter();
         let unit = units.find(|unit| name.strip_prefix(unit.id.as_str()).is_some_and(no_more));
-        unit.is_some_and(|unit| BURNERS.contains(&unit.params.kind()))
+        unit.is_some_and(|unit| PUMPED.contains(&unit.params.kind()))
     };
     through.iter().any(|name| generator(name.as_ref()))
 }

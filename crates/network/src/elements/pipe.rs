@@ -141,6 +141,12 @@ pub struct PipeParams {
     /// Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub soil_rings: Option<usize>,
+    /// Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_capacity_j_m_k: Option<f64>,
+    /// Share of the thermal resistance that lies beyond that node. Absent: 0.5.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_share: Option<f64>,
     /// Wind across a pipe in the air, m/s. Absent: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wind_m_s: Option<f64>,
@@ -214,6 +220,8 @@ impl Default for PipeParams {
             companion: None,
             companion_reversed: None,
             soil_rings: None,
+            ground_capacity_j_m_k: None,
+            ground_share: None,
             wind_m_s: None,
             outer_film_w_m2_k: None,
             surroundings_k: None,

@@ -69,6 +69,8 @@ class _Stub(TypedDict, total=False):
     companion: str
     companion_reversed: bool
     soil_rings: int
+    ground_capacity_j_m_k: float
+    ground_share: float
     wind_m_s: float
     outer_film_w_m2_k: float
     surroundings_k: float
@@ -1480,6 +1482,8 @@ class _Edge:
         companion: str | None = None,
         companion_reversed: bool | None = None,
         soil_rings: int | None = None,
+        ground_capacity_j_m_k: float | None = None,
+        ground_share: float | None = None,
         wind_m_s: float | None = None,
         outer_film_w_m2_k: float | None = None,
         surroundings_k: float | None = None,
@@ -1577,6 +1581,10 @@ class _Edge:
             Whether port a of the companion lies beside port b.
         soil_rings
             Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
+        ground_capacity_j_m_k
+            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+        ground_share
+            Share of the thermal resistance that lies beyond that node. Absent: 0.5.
         wind_m_s
             Wind across a pipe in the air, m/s. Absent: 1.
         outer_film_w_m2_k
@@ -7052,6 +7060,8 @@ class Grid:
         companion: str | None = None,
         companion_reversed: bool | None = None,
         soil_rings: int | None = None,
+        ground_capacity_j_m_k: float | None = None,
+        ground_share: float | None = None,
         wind_m_s: float | None = None,
         outer_film_w_m2_k: float | None = None,
         surroundings_k: float | None = None,
@@ -7145,6 +7155,10 @@ class Grid:
             Whether port a of the companion lies beside port b.
         soil_rings
             Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
+        ground_capacity_j_m_k
+            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+        ground_share
+            Share of the thermal resistance that lies beyond that node. Absent: 0.5.
         wind_m_s
             Wind across a pipe in the air, m/s. Absent: 1.
         outer_film_w_m2_k
@@ -7444,6 +7458,8 @@ class Grid:
         initial_degc: float | None = None,
         initial_k: float | None = None,
         soil_rings: int | None = None,
+        ground_capacity_j_m_k: float | None = None,
+        ground_share: float | None = None,
         wind_m_s: float | None = None,
         outer_film_w_m2_k: float | None = None,
         surroundings_k: float | None = None,
@@ -7538,6 +7554,10 @@ class Grid:
             initial_degc.
         soil_rings
             Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
+        ground_capacity_j_m_k
+            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+        ground_share
+            Share of the thermal resistance that lies beyond that node. Absent: 0.5.
         wind_m_s
             Wind across a pipe in the air, m/s. Absent: 1.
         outer_film_w_m2_k

@@ -1,6 +1,6 @@
 //! X1, fouling: a heat exchanger transfers less than its data say.
 //!
-//! **Equation** `UA = factor UA0`, of an exchanger of the network or of a direct exchanger of a house.
+//! **Equation** `UA = factor UA0`, of an exchanger of the network, a direct exchanger of a house or that of a balancing unit.
 //!
 //! **Neutral** `factor = 1`. **Looks like** an approach that grows with the load on both sides.
 
@@ -38,7 +38,10 @@ impl ModelChange for Fouling {
         let unit = model.units.iter().find(|unit| unit.id == component).map(|unit| &unit.params);
         match (edge, unit) {
             (Some(ElementParams::HeatExchanger(_)), _)
-            | (_, Some(EquipmentParams::DirectExchanger(_))) => {}
+            | (
+                _,
+                Some(EquipmentParams::DirectExchanger(_) | EquipmentParams::BalancingExchanger(_)),
+            ) => {}
             _ => return Err(wanted("heat_exchanger", component)),
         }
         let parameter = format!("{component}.ua_w_k");
