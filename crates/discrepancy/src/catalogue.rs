@@ -6,8 +6,11 @@
 
 mod hydraulics;
 mod pipes;
+mod seen;
 mod sensors;
 mod units;
+
+pub(crate) use seen::Use;
 
 use crate::experiment::Experiment;
 use crate::unknown::{Target, Unknown};

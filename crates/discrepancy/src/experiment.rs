@@ -3,6 +3,7 @@
 //! Measured inputs drive their signals ([`crate::inputs`]). What is a mean over a step belongs to its middle, a state to its end
 //! ([`Moment`]); the water of a run begins at the mean of the temperatures that are read first.
 
+use crate::catalogue::Use;
 use crate::data::{Run, Track};
 use crate::error::ExplainError;
 use crate::inputs::Input;
@@ -19,6 +20,8 @@ use anergy_simulation::error::RunError;
 use anergy_simulation::model::{Model, Place};
 use anergy_simulation::simulation::Simulation;
 use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// Longest lag of an input over the shortest run.
 const LONGEST_LAG: f64 = 0.25;
@@ -54,6 +57,7 @@ pub struct Experiment {
     pub samples: Vec<Sample>,
     /// Smallest and largest value of the signal of every input.
     pub(crate) ranges: Vec<(f64, f64)>,
+    uses: OnceLock<BTreeMap<String, Use>>,
     pub(crate) step: Time,
 }
 
@@ -135,7 +139,7 @@ impl Experiment {
         };
         let ranges = sensors.sensor.iter().map(range).collect();
         let step = plan.step();
-        Ok(Self { model, sensors, runs, accuracy, samples, ranges, step })
+        Ok(Self { model, sensors, runs, accuracy, samples, ranges, uses: OnceLock::new(), step })
     }
 
     /// What the sensors should have read, with values for the unknowns.
@@ -244,15 +248,15 @@ impl Experiment {
         model
     }
 
-    /// Every compared quantity over a run; empty for inputs.
-    fn simulate(
+    /// The simulation of a run with its measured inputs, and its steps.
+    fn driven(
         &self,
         model: &Model,
         index: usize,
         step: Time,
         unknowns: &[Unknown],
         at: &[f64],
-    ) -> Result<Vec<Track>, ExplainError> {
+    ) -> Result<(Simulation, usize), ExplainError> {
         let (mut model, run) = (model.clone(), &self.runs[index]);
         let begin_s = run.span_s.0;
         let rows = ((run.span_s.1 - begin_s) / step.as_s()).ceil() as usize + 1;
@@ -273,8 +277,49 @@ impl Experiment {
             };
             model.run.initial_k = mean_k + unknowns.iter().zip(at).map(offset).sum::<f64>();
         }
-        let plan = build(&model).map_err(ExplainError::Model)?;
-        let mut simulation = Simulation::new(plan)?;
+        Ok((Simulation::new(build(&model).map_err(ExplainError::Model)?)?, rows))
+    }
+
+    /// What the water of every edge does in the model as it is; empty where it does not run.
+    pub(crate) fn uses(&self) -> &BTreeMap<String, Use> {
+        self.uses.get_or_init(|| self.observe_uses().unwrap_or_default())
+    }
+
+    fn observe_uses(&self) -> Result<BTreeMap<String, Use>, ExplainError> {
+        let edges: Vec<&str> = self.model.edges.iter().map(|edge| edge.id.as_str()).collect();
+        let (mut flows, mut losses) = (vec![Vec::new(); edges.len()], vec![0.0; edges.len()]);
+        for index in 0..self.runs.len() {
+            let (mut simulation, rows) = self.driven(&self.model, index, self.step, &[], &[])?;
+            let channel = |edge: &&str, quantity: &str| {
+                simulation.channel(&format!("{edge}.{quantity}")).ok()
+            };
+            let of_flow: Vec<_> = edges.iter().map(|edge| channel(edge, "m_flow_kg_s")).collect();
+            let of_loss: Vec<_> = edges.iter().map(|edge| channel(edge, "q_loss_w")).collect();
+            for k in 1..=rows {
+                simulation.advance_to(Time(self.step.0 * k as i64), self.step)?;
+                for (i, (flow, loss)) in of_flow.iter().zip(&of_loss).enumerate() {
+                    flows[i].push(flow.map_or(0.0, |id| simulation.get(id)));
+                    losses[i] += loss.map_or(0.0, |id| simulation.get(id));
+                }
+            }
+        }
+        let of = |((edge, flows), loss): ((&&str, &Vec<f64>), &f64)| {
+            ((*edge).to_owned(), Use::of(flows, *loss))
+        };
+        Ok(edges.iter().zip(&flows).zip(&losses).map(of).collect())
+    }
+
+    /// Every compared quantity over a run; empty for inputs.
+    fn simulate(
+        &self,
+        model: &Model,
+        index: usize,
+        step: Time,
+        unknowns: &[Unknown],
+        at: &[f64],
+    ) -> Result<Vec<Track>, ExplainError> {
+        let begin_s = self.runs[index].span_s.0;
+        let (mut simulation, rows) = self.driven(model, index, step, unknowns, at)?;
         let channels = self.sensors.sensor.iter().map(|sensor| match sensor.role {
             Role::Compare => {
                 simulation.channel(&sensor.signal).map(|id| Some((id, simulation.moment(id))))

@@ -1,5 +1,6 @@
 //! Effects of pipes.
 
+use super::seen::Seen;
 use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
@@ -18,6 +19,8 @@ const SURROUNDINGS_K: f64 = 0.5 / ROOT3;
 /// Tolerance of a pressure loss, relative: at most 2 %.
 const FRICTION: f64 = 0.02 / ROOT3;
 const ROOT3: f64 = 1.732_050_807_568_877_2;
+/// Heat capacity of water, J/(m3 K).
+const WATER_J_M3_K: f64 = 4.1e6;
 /// Wall of a pipe whose outer diameter is not known, m.
 const WALL_M: f64 = 0.003;
 
@@ -34,13 +37,14 @@ fn pipes(model: &Model) -> impl Iterator<Item = (&str, &PipeParams)> {
 }
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
-    let pressure = sensed(experiment, "pa");
-    for (component, _) in pipes(&experiment.model) {
+    let (seen, pressure) = (Seen::new(experiment), sensed(experiment, "pa"));
+    for (component, pipe) in pipes(&experiment.model) {
         let free = |id| !has(experiment, id, component);
-        if free("P10") {
+        let moves = |delay, loss| seen.tolerance(component, content_m3(pipe), delay, loss);
+        if free("P10") && (pressure || moves(LENGTH, LENGTH)) {
             all.push(Unknown::plain(effect_target("P10", component, "factor"), 1.0, LENGTH));
         }
-        if free("P2") {
+        if free("P2") && moves(0.0, LOSS) {
             let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, LOSS);
             all.push(Unknown { logarithmic: true, ..factor });
         }
@@ -48,7 +52,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
             let factor = Unknown::plain(effect_target("P8", component, "factor"), 0.0, FRICTION);
             all.push(Unknown { logarithmic: true, ..factor });
         }
-        if free("P3") {
+        if free("P3") && moves(0.0, Seen::surroundings(SURROUNDINGS_K)) {
             let target = effect_target("P3", component, "difference_k");
             all.push(Unknown::plain(target, 0.0, SURROUNDINGS_K));
         }
@@ -59,9 +63,10 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let (heat, pressure) = (sensed(experiment, "k"), sensed(experiment, "pa"));
     let longest_s = experiment.runs.iter().map(|run| run.span_s.1 - run.span_s.0);
     let longest_s = longest_s.fold(0.0, f64::max);
+    let seen = Seen::new(experiment);
     for (component, pipe) in pipes(&experiment.model) {
         if heat {
-            of_heat(component, pipe, all);
+            of_heat(&seen, component, pipe, pressure, all);
             if longest_s > LONG_S && lies_alone(&experiment.model, component, pipe) {
                 all.push(Candidate::effect(
                     "P4",
@@ -72,7 +77,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                     "hours at one temperature after a step",
                 ));
             }
-            if pauses(experiment) {
+            if pauses(experiment) && seen.effect(component, content_m3(pipe), 0.5, 0.0) {
                 of_missing_piece(component, pipe, all);
             }
         }
@@ -110,8 +115,12 @@ fn lies_alone(model: &Model, component: &str, pipe: &PipeParams) -> bool {
         && !pipes(model).any(|(_, other)| beside(other))
 }
 
+fn content_m3(pipe: &PipeParams) -> f64 {
+    0.25 * PI * pipe.inner_diameter_m.powi(2) * pipe.length_m
+}
+
 fn of_missing_piece(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
-    let content_m3 = 0.25 * PI * pipe.inner_diameter_m.powi(2) * pipe.length_m;
+    let content_m3 = content_m3(pipe);
     let piece = Candidate::effect(
         "P6",
         component,
@@ -124,12 +133,20 @@ fn of_missing_piece(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>
     all.push(piece.tolerated(0.0, LENGTH * content_m3));
 }
 
-fn of_heat(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
+fn of_heat(
+    seen: &Seen<'_>,
+    component: &str,
+    pipe: &PipeParams,
+    pressure: bool,
+    all: &mut Vec<Candidate>,
+) {
+    let moves = |delay, loss| seen.effect(component, content_m3(pipe), delay, loss);
     let inner_m = pipe.inner_diameter_m;
     let outer_m = pipe.outer_diameter_m.unwrap_or(inner_m + 2.0 * WALL_M);
     let steel = pipe.wall_density_kg_m3 * pipe.wall_heat_capacity_j_kg_k;
     let geometry = steel * 0.25 * PI * (outer_m * outer_m - inner_m * inner_m);
-    if pipe.wall == WallModel::None {
+    let of_water = WATER_J_M3_K * 0.25 * PI * inner_m * inner_m;
+    if pipe.wall == WallModel::None && moves(1.5 * geometry / of_water, 0.0) {
         let wall = Candidate::effect(
             "P1",
             component,
@@ -142,6 +159,43 @@ fn of_heat(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
         let film = |target| Unknown::between(target, 0.5, 2.0).starting_at(1.0);
         all.push(wall.with("film_factor", film));
     }
+    if moves(0.0, 5.0) {
+        of_loss(component, all);
+    }
+    if seen.rests(component) {
+        all.push(Candidate::effect(
+            "P5",
+            component,
+            "heat loss at standstill",
+            ("factor", "1"),
+            |target| Unknown::between(target, 0.2, 5.0),
+            "pauses of several lengths",
+        ));
+    }
+    if moves(0.5, 0.0) {
+        all.push(Candidate::effect(
+            "P7",
+            component,
+            "axial dispersion",
+            ("dispersion_m2_s", "m2/s"),
+            |target| Unknown::between(target, 0.01, 2.0),
+            "two flow rates",
+        ));
+    }
+    if pressure || moves(0.3, 0.3) {
+        let length = Candidate::effect(
+            "P10",
+            component,
+            "length of the pipe",
+            ("factor", "1"),
+            |target| Unknown::plain(target, 1.0, 0.3 / 1.96),
+            "a second flow meter, or the pressure loss",
+        );
+        all.push(length.tolerated(1.0, LENGTH));
+    }
+}
+
+fn of_loss(component: &str, all: &mut Vec<Candidate>) {
     let insulation = Candidate::effect(
         "P2",
         component,
@@ -160,29 +214,4 @@ fn of_heat(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
         "a probe in the ground, or a run of cold and one of hot water",
     );
     all.push(surroundings.tolerated(0.0, SURROUNDINGS_K));
-    all.push(Candidate::effect(
-        "P5",
-        component,
-        "heat loss at standstill",
-        ("factor", "1"),
-        |target| Unknown::between(target, 0.2, 5.0),
-        "pauses of several lengths",
-    ));
-    all.push(Candidate::effect(
-        "P7",
-        component,
-        "axial dispersion",
-        ("dispersion_m2_s", "m2/s"),
-        |target| Unknown::between(target, 0.01, 2.0),
-        "two flow rates",
-    ));
-    let length = Candidate::effect(
-        "P10",
-        component,
-        "length of the pipe",
-        ("factor", "1"),
-        |target| Unknown::plain(target, 1.0, 0.3 / 1.96),
-        "a second flow meter, or the pressure loss",
-    );
-    all.push(length.tolerated(1.0, LENGTH));
 }
