@@ -186,6 +186,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "heat",
     "heat_at_stop",
     "heat_share",
+    "ground_share",
     "heat_slope",
     "hplib_power_coefficients",
     "hplib_ratio_coefficients",

@@ -37,7 +37,7 @@ fn pipes(model: &Model) -> impl Iterator<Item = (&str, &PipeParams)> {
 }
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
-    let (seen, pressure) = (Seen::new(experiment), sensed(experiment, "pa"));
+    let (seen, pressure) = (Seen::new(experiment), shows_friction(experiment));
     for (component, pipe) in pipes(&experiment.model) {
         let free = |id| !has(experiment, id, component);
         let moves = |delay, loss| seen.tolerance(component, content_m3(pipe), delay, loss);
@@ -60,7 +60,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
 }
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
-    let (heat, pressure) = (sensed(experiment, "k"), sensed(experiment, "pa"));
+    let (heat, pressure) = (sensed(experiment, "k"), shows_friction(experiment));
     let longest_s = experiment.runs.iter().map(|run| run.span_s.1 - run.span_s.0);
     let longest_s = longest_s.fold(0.0, f64::max);
     let seen = Seen::new(experiment);
@@ -93,6 +93,11 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             all.push(friction.tolerated(0.0, FRICTION));
         }
     }
+}
+
+/// Whether friction shows: in a pressure difference, or in a flow that is not given.
+fn shows_friction(experiment: &Experiment) -> bool {
+    ["pa", "kg_s", "m3_s"].iter().any(|si| sensed(experiment, si))
 }
 
 /// Whether a measured flow rests at times.

@@ -3,6 +3,9 @@
 //! **Equation** for each quarter of a run the shift of the simulation that fits the column best ([`super::misfit`]). A jump: one quarter
 //! fits with a large shift and far worse without, another one without and far worse with it, or with one of the other sign.
 //!
+//! A shift must be sharp: as much more or less fits far worse. What changes slowly, such as a layer of a storage, looks shifted wherever
+//! it is too warm; and beside a quarter without a shift a jump is at most a tenth of the run.
+//!
 //! **Assumptions** no effect of a plant delays by a minute (and five readings) in one quarter and not at all in another one, or makes
 //! something arrive too late here and too early there. Longer pipes and wrong meters delay everywhere.
 
@@ -19,10 +22,12 @@ const NONE: f64 = 2.0;
 const FAR: (f64, f64) = (8000.0, 0.7);
 /// Most shifts that are looked at first.
 const MOST: f64 = 1500.0;
-/// Misfit from which on a clock is suspected; by which a shift must be better, and that it may leave.
+/// Misfit from which on a clock is suspected; by which a shift must be better, and that it may leave, as it is or over that without it.
 const SUSPECT: f64 = 0.8;
 const BETTER: f64 = 0.6;
-const FITS: f64 = 1.0;
+const FITS: (f64, f64) = (1.0, 0.25);
+/// Longest jump over the run.
+const JUMP: f64 = 0.1;
 /// Clocks of other zones differ by multiples of this, s.
 const ZONE_S: f64 = 1800.0;
 
@@ -82,11 +87,18 @@ fn parts(column: &Column, span_s: (f64, f64)) -> Vec<Part> {
             let (late_s, left) = best(&mut fine.chain([coarse.0]))?;
             let near = (-2..=2).map(|i| f64::from(i) * column.interval_s);
             let unmoved = near.filter_map(misfit).fold(as_is, f64::min);
-            (late_s.abs() > large_s && left < FITS && unmoved > left + BETTER).then_some(late_s)
+            let beside = [late_s - large_s, late_s + large_s];
+            let is_sharp = beside.into_iter().filter_map(misfit).all(|other| other > left + BETTER);
+            (is_sharp && late_s.abs() > large_s && fits(left, unmoved)).then_some(late_s)
         });
         Part { until_s, moved_s, span_s }
     };
     (0..PARTS).map(one).collect()
+}
+
+/// Whether a misfit is small, and far smaller than another one.
+fn fits(left: f64, other: f64) -> bool {
+    left < FITS.0.max(FITS.1 * other) && other > left + BETTER
 }
 
 fn large_s(column: &Column) -> f64 {
@@ -95,14 +107,19 @@ fn large_s(column: &Column) -> f64 {
 
 /// Where a clock jumps, and by how much, s.
 fn jump(column: &Column, parts: &[Part]) -> Option<(f64, f64)> {
+    let whole_s = parts[PARTS - 1].until_s - parts[0].span_s.0;
+    let longest_s = JUMP * whole_s;
     let other = |part: &Part, late_s: f64| -> Option<f64> {
         if let Some(here_s) = part.moved_s {
             return (here_s * late_s < 0.0).then_some(here_s);
         }
+        if late_s.abs() > longest_s {
+            return None;
+        }
         let misfit = |s: f64| column.beside(&column.simulated, part.span_s, -s);
         let near = (-2..=2).map(|i| f64::from(i) * 0.5 * NONE * column.interval_s);
         let unmoved = near.filter_map(misfit).fold(f64::INFINITY, f64::min);
-        (unmoved < FITS && misfit(late_s)? > unmoved + BETTER).then_some(0.0)
+        fits(unmoved, misfit(late_s)?).then_some(0.0)
     };
     let mut found: Option<(usize, f64, f64)> = None;
     for (i, moved) in parts.iter().enumerate() {

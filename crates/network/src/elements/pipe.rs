@@ -13,6 +13,7 @@
 //!
 //! **Sources** `licklederer2021`, `wetter2014`, `rossman2020`.
 
+mod ground_node;
 mod laying;
 mod power_law;
 pub mod thermal;

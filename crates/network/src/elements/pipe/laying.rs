@@ -19,9 +19,6 @@ use anergy_core::ids::EdgeId;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Share of the thermal resistance beyond the node of the ground, where it is not given.
-const GROUND_SHARE: f64 = 0.5;
-
 /// Conductivity of a wall that does not say its own, W/(m K): steel.
 pub const STEEL_W_M_K: f64 = 50.0;
 /// Conductivity of a casing, W/(m K).
@@ -63,11 +60,11 @@ impl Resistance {
     }
 }
 
-fn problem<T>(problem: impl Into<String>) -> Result<T, ElementError> {
+pub(super) fn problem<T>(problem: impl Into<String>) -> Result<T, ElementError> {
     Err(ElementError::Fields { problem: problem.into() })
 }
 
-fn out_of_range<T>(
+pub(super) fn out_of_range<T>(
     field: &'static str,
     value: f64,
     requirement: &'static str,
@@ -139,7 +136,7 @@ impl PipeParams {
         if let Some(depth_m) = self.depth_m {
             positive("depth_m", depth_m)?;
         }
-        self.check_node()?;
+        self.check_ground_node()?;
         let Some(laying) = self.laying else {
             if let Some(field) = self.field_of_laying() {
                 return problem(format!(
@@ -185,33 +182,6 @@ impl PipeParams {
         }
     }
 
-    /// Whether one node of the ground can be around it.
-    fn check_node(&self) -> Result<(), ElementError> {
-        let Some(capacity_j_m_k) = self.ground_capacity_j_m_k else {
-            return match self.ground_share {
-                Some(_) => problem("ground_share needs ground_capacity_j_m_k"),
-                None => Ok(()),
-            };
-        };
-        positive("ground_capacity_j_m_k", capacity_j_m_k)?;
-        let share = self.ground_share.unwrap_or(GROUND_SHARE);
-        if !(0.01..=0.99).contains(&share) {
-            return out_of_range("ground_share", share, "must lie between 0.01 and 0.99");
-        }
-        let beside = self.spacing_m.is_some() || self.companion.is_some();
-        if self.soil_rings.is_some() || beside || self.laying == Some(Laying::Twin) {
-            return problem(
-                "ground_capacity_j_m_k is that of a pipe that lies alone, without soil_rings, companion or twin",
-            );
-        }
-        if self.laying.is_none() && self.insulation_resistance_k_m_w.is_none() {
-            return problem(
-                "ground_capacity_j_m_k needs a heat loss: insulation_resistance_k_m_w or laying",
-            );
-        }
-        Ok(())
-    }
-
     fn check_rings(&self, laying: Laying) -> Result<(), ElementError> {
         let Some(rings) = self.soil_rings else { return Ok(()) };
         if !(1..=MOST_RINGS).contains(&rings) {
@@ -236,16 +206,7 @@ impl PipeParams {
         ground: &Ground,
     ) -> Result<Option<SoilRings>, ElementError> {
         let Some(alone) = self.resistance(ground)? else { return Ok(None) };
-        if let Some(capacity_j_m_k) = self.ground_capacity_j_m_k {
-            let share = self.ground_share.unwrap_or(GROUND_SHARE);
-            let whole_k_m_w = alone.total_k_m_w();
-            let node = SoilRings::node(
-                edge,
-                first,
-                self.length_m,
-                capacity_j_m_k,
-                [(1.0 - share) * whole_k_m_w, share * whole_k_m_w],
-            );
+        if let Some(node) = self.ground_node(edge, first, alone.total_k_m_w()) {
             return Ok(Some(node));
         }
         let Some(rings) = self.soil_rings else { return Ok(None) };
