@@ -24,6 +24,11 @@ const TEMPERATURE: f64 = 1.0;
 const LOUD: f64 = 0.125;
 /// Evidence by which an effect must beat the model without it, nats.
 const WINS: f64 = 4.0;
+/// Residuals below so many standard deviations are well within what the sensors promise: only what is very sure is named then,
+/// as many samples also tell the layers of a model from the water of a storage.
+const WITHIN: f64 = 0.75;
+/// ... with evidence above this, nats.
+const SURE: f64 = 25.0;
 /// The same, where it foretells no better than strained tolerances.
 const STRAINS: f64 = 8.0;
 /// Log predictive density by which it must beat it, nats; and as many standard errors.
@@ -182,7 +187,7 @@ impl<'a> Search<'a> {
                 }
             }
             let named = matches!(settled.verdict, Verdict::Named | Verdict::Class);
-            if !(named && round.findings.first().is_some_and(wins)) {
+            if !(named && round.findings.first().is_some_and(|f| wins(f, round.null_z))) {
                 first = first.or_else(|| self.first(round));
                 break;
             }
@@ -364,8 +369,11 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether an effect is more than what tolerances and noise would show by chance.
-fn wins(f: &Finding) -> bool {
+/// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
+fn wins(f: &Finding, null_z: f64) -> bool {
+    if null_z < WITHIN && f.evidence < SURE {
+        return false;
+    }
     let (nats, errors) = FORETELLS;
     let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
     // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.

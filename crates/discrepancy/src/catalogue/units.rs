@@ -8,22 +8,28 @@ use crate::unknown::Unknown;
 const LOSS: f64 = 0.08;
 /// Tolerance of an efficiency, relative.
 const EFFICIENCY: f64 = 0.02;
+/// Of the mixing along the height of a storage, whose layers are a model of it: logarithm of its factor.
+const MIXING: f64 = 0.7;
+/// Tolerance of the time that a start takes, relative.
+const START: f64 = 0.1;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
     for unit in &experiment.model.units {
         let (component, kind) = (unit.id.as_str(), unit.params.kind());
-        let mut add = |id: &'static str, sd: f64| {
+        let mut add = |id: &'static str, field: &'static str, sd: f64| {
             if !has(experiment, id, component) {
-                let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd);
+                let factor = Unknown::plain(effect_target(id, component, field), 0.0, sd);
                 all.push(Unknown { logarithmic: true, ..factor });
             }
         };
         if kind == "storage" && warm {
-            add("T1", LOSS);
+            add("T1", "factor", LOSS);
+            add("T2", "factor", MIXING);
         }
         if power && is_generator(kind) {
-            add("G1", EFFICIENCY);
+            add("G1", "factor", EFFICIENCY);
+            add("G3", "time_factor", START);
         }
     }
 }

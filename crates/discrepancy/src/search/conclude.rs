@@ -12,7 +12,7 @@ impl Search<'_> {
     pub(super) fn conclude(&self, round: &Round, worst: f64, settled: &mut Settled) {
         let parallel: Vec<bool> =
             round.tried.iter().map(|t| cosine(&round.tried[0], t) > PARALLEL).collect();
-        settled.class = class(&round.findings, &parallel);
+        settled.class = class(&round.findings, &parallel, round.null_z);
         (settled.verdict, settled.because) =
             verdict(&round.findings, settled.class.len(), round.null_z, worst);
     }
@@ -20,8 +20,8 @@ impl Search<'_> {
 
 /// What these data do not tell from the winner, the winner included, the most plausible first; empty where nothing wins.
 /// `parallel` says whose sensitivities are those of the winner.
-fn class(findings: &[Finding], parallel: &[bool]) -> Vec<Finding> {
-    let Some(winner) = findings.first().filter(|f| wins(f)) else { return Vec::new() };
+fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
+    let Some(winner) = findings.first().filter(|f| wins(f, null_z)) else { return Vec::new() };
     let belongs = |(f, parallel): &(&Finding, &bool)| {
         let behind = winner.evidence - f.evidence;
         let refuted = f.probability == 0.0;
@@ -46,13 +46,18 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
     let Some(winner) = findings.first() else {
         return (Verdict::Unexplained, "no effect of the catalogue could be tried".into());
     };
-    if !wins(winner) {
+    if !wins(winner, null_z) {
         return if null_z.max(worst) < UNEXPLAINED {
             (
                 Verdict::Nothing,
-                format!(
-                    "residuals are {null_z:.2} standard deviations, {worst:.2} at the worst sensor, and no effect explains them better than the tolerances"
-                ),
+                match worst > 0.0 {
+                    true => format!(
+                        "residuals are {null_z:.2} standard deviations, {worst:.2} at the worst sensor, and no effect explains them better than the tolerances"
+                    ),
+                    false => format!(
+                        "residuals are {null_z:.2} standard deviations, at no sensor more than chance, and no effect explains them better than the tolerances"
+                    ),
+                },
             )
         } else {
             (
@@ -133,16 +138,19 @@ mod tests {
         let findings =
             [finding("A", 30.0), finding("B", 28.0), finding("C", 25.0), finding("D", 23.0)];
         // 3 nats, or 10 % of 30 = 3; parallel ones within 6.
-        assert_eq!(ids(&class(&findings, &[true, false, false, false])), ["A", "B"]);
-        assert_eq!(ids(&class(&findings, &[true, false, true, true])), ["A", "B", "C"]);
+        assert_eq!(ids(&class(&findings, &[true, false, false, false], 3.0)), ["A", "B"]);
+        assert_eq!(ids(&class(&findings, &[true, false, true, true], 3.0)), ["A", "B", "C"]);
         let refuted = Finding { probability: 0.0, ..finding("B", 28.0) };
-        assert_eq!(ids(&class(&[finding("A", 30.0), refuted], &[true, true])), ["A"]);
+        assert_eq!(ids(&class(&[finding("A", 30.0), refuted], &[true, true], 3.0)), ["A"]);
         // 10 % of 300 = 30.
         assert_eq!(
-            ids(&class(&[finding("A", 300.0), finding("B", 290.0)], &[true, false])),
+            ids(&class(&[finding("A", 300.0), finding("B", 290.0)], &[true, false], 3.0)),
             ["A", "B"]
         );
-        assert!(class(&[finding("A", 1.0)], &[true]).is_empty());
+        assert!(class(&[finding("A", 1.0)], &[true], 3.0).is_empty());
+        // Within what the sensors promise only what is very sure counts.
+        assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
+        assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);
     }
 
     #[test]
@@ -151,7 +159,7 @@ mod tests {
         let findings =
             [strained, finding("B", 28.0), Finding { strain: 1.9, ..finding("C", 29.0) }];
         // Of those within two standard deviations the one with more evidence; 2 ln(9/2) = 3.0 nats less for 9 of them.
-        assert_eq!(ids(&class(&findings, &[true, false, false])), ["C", "B", "A"]);
+        assert_eq!(ids(&class(&findings, &[true, false, false], 3.0)), ["C", "B", "A"]);
     }
 
     #[test]
@@ -160,6 +168,7 @@ mod tests {
         let good = finding("A", 30.0);
         assert_eq!(of(&[], 0, 3.0, 3.0), Verdict::Unexplained);
         assert_eq!(of(&[finding("A", 1.0)], 0, 1.2, 0.0), Verdict::Nothing);
+        assert_eq!(of(&[finding("A", 20.0)], 0, 0.7, 0.0), Verdict::Nothing);
         assert_eq!(of(&[finding("A", 1.0)], 0, 1.2, 2.5), Verdict::Unexplained);
         assert_eq!(of(std::slice::from_ref(&good), 1, 3.0, 3.0), Verdict::Named);
         assert_eq!(of(std::slice::from_ref(&good), 2, 3.0, 3.0), Verdict::Class);
