@@ -1582,7 +1582,8 @@ class _Edge:
         soil_rings
             Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
         ground_capacity_j_m_k
-            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent:
+            none.
         ground_share
             Share of the thermal resistance that lies beyond that node. Absent: 0.5.
         wind_m_s
@@ -6219,6 +6220,32 @@ class _Effect:
             How much later than assumed the temperature arrives, s; 0 changes nothing. Default: 0.0. Also
             lag_min, lag_h, lag_d.
         """
+    def p4(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        capacity_j_m_k: float | None = None,
+        share: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "P4".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        capacity_j_m_k
+            Heat capacity per length, J/(m K); 0 changes nothing.
+        share
+            Share of the thermal resistance of the pipe that lies beyond it. Default: 0.5.
+        """
     def p5(
         self,
         component: str,
@@ -6241,6 +6268,30 @@ class _Effect:
             Interval of the value; changes nothing
         factor
             Heat loss at zero flow over that in flow; 1 changes nothing.
+        """
+    def p6(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        volume_m3: float | None = None,
+        volume_l: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "P6".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        volume_m3
+            Water of the missing piece, m3; 0 changes nothing. Also volume_l.
         """
     def p7(
         self,
@@ -7156,7 +7207,8 @@ class Grid:
         soil_rings
             Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
         ground_capacity_j_m_k
-            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent:
+            none.
         ground_share
             Share of the thermal resistance that lies beyond that node. Absent: 0.5.
         wind_m_s
@@ -7555,7 +7607,8 @@ class Grid:
         soil_rings
             Rings of soil around a pipe buried alone that store heat, 1 to 5. Absent: the soil stores none.
         ground_capacity_j_m_k
-            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent: none.
+            Heat capacity around the pipe per length, J/(m K): one node in its thermal resistance. Absent:
+            none.
         ground_share
             Share of the thermal resistance that lies beyond that node. Absent: 0.5.
         wind_m_s
