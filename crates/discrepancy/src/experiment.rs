@@ -1,6 +1,6 @@
 //! The model under the measured inputs: what every compared sensor should have read.
 //!
-//! Measured inputs drive their signals ([`crate::inputs`]). What is a mean over a step belongs to its middle, a state to its end
+//! Measured inputs drive their signals (`inputs`). What is a mean over a step belongs to its middle, a state to its end
 //! ([`Moment`]); the water of a run begins at the mean of the temperatures that are read first.
 
 use crate::catalogue::Use;
