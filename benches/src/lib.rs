@@ -83,14 +83,7 @@ pub fn two_pipe_network(consumers: usize, seed: u64) -> String {
 /// The same network for a year: imposed flows of houses with heat loads from the profiles in the file
 /// `profiles` (written by [`write_profiles`]), linear between its hours; the plant has 80 degC.
 pub fn two_pipe_network_of_a_year(consumers: usize, seed: u64, profiles: &str) -> String {
-    let mut random = Random(seed);
-    let (sites, order) = grown_tree(consumers.max(1), &mut random);
-    let loops = loops(&sites, (LOOPS * consumers as f64).round() as usize, &mut random);
-    let mut out = pipes(&sites, &order, &loops)
-        .replace("until = \"1h\"", "until = \"365d\"")
-        .replace("step = \"1s\"", "step = \"15min\"")
-        .replace("record = \"10s\"", "record = \"1h\"")
-        .replace("initial_degc = 50", "initial_degc = 60");
+    let (sites, mut out) = sites_of_a_year(consumers, seed);
     let _ = writeln!(
         out,
         "[[edge]]\nid = \"source\"\nkind = \"resistance\"\nfrom = \"plant.cold\"\nto = \"plant.hot\"\n\
@@ -99,17 +92,35 @@ pub fn two_pipe_network_of_a_year(consumers: usize, seed: u64, profiles: &str) -
         sites[0].total_kg_s
     );
     for (i, site) in sites.iter().enumerate().skip(1) {
-        let size = (site.own_kg_s - LEAST_KG_S) / (MOST_KG_S - LEAST_KG_S) * PROFILES as f64;
         let _ = writeln!(
             out,
             "[[station]]\nsite = \"c{i}\"\nkind = \"prescribed_flow\"\n[[unit]]\nsite = \"c{i}\"\n\
              kind = \"heat_load\"\ntemperature_difference_k = 30\nv_flow_min_l_min = 0.3\ncoldest_return_degc = 20\n\
              [[series]]\nfile = \"{profiles}\"\ncolumn = \"load_{}_kw\"\nunit = \"kW\"\n\
              signal = \"c{i}.unit.load_w\"\ninterpolation = \"linear\"",
-            (size as usize).min(PROFILES - 1)
+            profile(site)
         );
     }
     out
+}
+
+/// The sites of a grown network, and its pipes as a run of a year.
+fn sites_of_a_year(consumers: usize, seed: u64) -> (Vec<Site>, String) {
+    let mut random = Random(seed);
+    let (sites, order) = grown_tree(consumers.max(1), &mut random);
+    let loops = loops(&sites, (LOOPS * consumers as f64).round() as usize, &mut random);
+    let text = pipes(&sites, &order, &loops)
+        .replace("until = \"1h\"", "until = \"365d\"")
+        .replace("step = \"1s\"", "step = \"15min\"")
+        .replace("record = \"10s\"", "record = \"1h\"")
+        .replace("initial_degc = 50", "initial_degc = 60");
+    (sites, text)
+}
+
+/// The profile of a house of this size.
+fn profile(site: &Site) -> usize {
+    let size = (site.own_kg_s - LEAST_KG_S) / (MOST_KG_S - LEAST_KG_S) * PROFILES as f64;
+    (size as usize).min(PROFILES - 1)
 }
 
 /// Hourly loads of a year of houses of different sizes, as the text of a CSV file: heating that follows

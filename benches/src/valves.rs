@@ -1,9 +1,6 @@
 //! A town for a year in which nobody imposes a flow: a thermostatic valve at every consumer reacts to its own return.
 
-use super::{
-    LEAST_KG_S, LOOPS, MOST_KG_S, PROFILES, Random, STATION_PA, VALVE_PA, grown_tree, loops, pipe,
-    pipes,
-};
+use super::{STATION_PA, VALVE_PA, pipe, profile, sites_of_a_year};
 use std::fmt::Write;
 
 /// Temperature of the return at which a valve is half open, degC, and change from closed to open, K; with 10 K the valves swing
@@ -16,14 +13,7 @@ const BY_PASS: f64 = 0.02;
 /// The network of [`super::two_pipe_network_of_a_year`] with a plant that holds a pressure difference, an exchanger and a
 /// thermostatic valve at every consumer, and the loads of the file `profiles` behind them.
 pub fn two_pipe_network_with_valves(consumers: usize, seed: u64, profiles: &str) -> String {
-    let mut random = Random(seed);
-    let (sites, order) = grown_tree(consumers.max(1), &mut random);
-    let loops = loops(&sites, (LOOPS * consumers as f64).round() as usize, &mut random);
-    let mut out = pipes(&sites, &order, &loops)
-        .replace("until = \"1h\"", "until = \"365d\"")
-        .replace("step = \"1s\"", "step = \"15min\"")
-        .replace("record = \"10s\"", "record = \"1h\"")
-        .replace("initial_degc = 50", "initial_degc = 60");
+    let (sites, mut out) = sites_of_a_year(consumers, seed);
     let farthest_pa = sites.iter().map(|site| site.loss_pa).fold(0.0, f64::max);
     let head_pa = 2.0 * farthest_pa + STATION_PA + VALVE_PA;
     let _ = writeln!(
@@ -38,7 +28,6 @@ pub fn two_pipe_network_with_valves(consumers: usize, seed: u64, profiles: &str)
         // m3/h at 1 bar: the design flow at half its stroke.
         let valve_pa = head_pa - 2.0 * site.loss_pa - STATION_PA;
         let kvs_m3_h = 2.0 * 3.6 * m / (valve_pa / 1e5).sqrt();
-        let size = (m - LEAST_KG_S) / (MOST_KG_S - LEAST_KG_S) * PROFILES as f64;
         let _ = writeln!(
             out,
             "[[station]]\nsite = \"c{i}\"\nkind = \"consumer\"\nstub = {{ pipe = \"{}\", length_m = 5 }}\n\
@@ -55,7 +44,7 @@ pub fn two_pipe_network_with_valves(consumers: usize, seed: u64, profiles: &str)
             pipe(m).0,
             20_000.0 * m,
             10.0 * m,
-            (size as usize).min(PROFILES - 1)
+            profile(site)
         );
     }
     out
