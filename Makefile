@@ -65,9 +65,9 @@ docs: ## The documentation as a book, in target/book
 
 validate: ## Slow cases, peers, large random sets
 	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 RSE_TESTS=all WEIGHTED_PI=all HUNTING=500 AMBIENT_DAY=1 LABORATORY=all EXPLAIN=all TABLE_DATE=$$(date +%F) \
-		cargo test --release -p anergy-tests \
-		--test every_element --test random_networks --test robustness --test destest \
-		--test openmodelica_heat --test ait_pongau --test ulg_pipe --test pipe_steps --test building --test rse_facility --test weighted_pi --test hunting --test hunting_random --test storage_charging --test ambient_day --test laboratory_houses --test explain_liege --test explain_ait -- --nocapture
+		cargo test --release -p anergy-tests --tests -- --nocapture \
+		every_element:: random_networks:: robustness:: destest:: openmodelica_heat:: ait_pongau:: ulg_pipe:: pipe_steps:: building:: \
+		rse_facility:: weighted_pi:: hunting:: hunting_random:: storage_charging:: ambient_day:: laboratory_houses:: liege:: ait::
 	$(MAKE) explain-stories
 	$(MAKE) bench-ensemble
 

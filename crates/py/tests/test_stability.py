@@ -39,7 +39,7 @@ def test_feeders(model):
 def test_controllers_and_modes(hunting):
     found = hunting.stability()
     assert found.controllers.ids == ["pi1", "pi2"] and not found.stable
-    # 0.0271 per l/min by hand (tests/hunting.rs).
+    # 0.0271 per l/min by hand (tests/pumps/hunting.rs).
     assert found.controllers["critical_gain"] / 60 == pytest.approx([0.0271] * 2, rel=0.02)
     first = found.modes[0]
     assert first.grows and not found.modes[-1].grows

@@ -10,7 +10,7 @@
 //! **Assumptions** one temperature of the air; linear radiation; the walls of one kind in one element.
 //! **Validity** time scales of hours to days, as the guideline says.
 //! **Numerics** exact over a step, see [`super::rc`]. **Sources** `vdi6007`; checked against five of its cases
-//! by `tests/building.rs`.
+//! by `tests/prosumers/building.rs`.
 
 use super::rc::{Node, RcNetwork};
 

@@ -1,4 +1,4 @@
-//! A rule, by hand; the tables of rules are in `tests/rules.rs`.
+//! A rule, by hand; the tables of rules are in `tests/prosumers/rules.rs`.
 
 use super::*;
 use serde_json::json;

@@ -241,6 +241,10 @@ fn the_detailed_model_is_nearest_to_the_truth() {
         }
     }
     if writes_pages() {
-        write_page("heat-pump-classes", "cargo test --workspace --test heat_pump_classes", &page);
+        write_page(
+            "heat-pump-classes",
+            "cargo test --workspace --test prosumers heat_pump_classes::",
+            &page,
+        );
     }
 }

@@ -276,7 +276,7 @@ fn a_measured_week_beside_four_published_models() {
     let plain = model(&data, Wall::None, Wall::None);
     let (read, _) = readings(&plain.with(&lossless).unwrap(), &times_s);
     line("anergy, no heat loss", &|point| against(point, &|row| read[row][point]));
-    write_table("ait_pongau", "models", "cargo test --workspace --test ait_pongau", &table);
+    write_table("ait_pongau", "models", "cargo test --workspace --test heat ait_pongau::", &table);
     for point in 0..3 {
         let rmse = against(point, &|row| read[row][point]).rmse;
         assert!(rmse > 1.5 * best[point], "{}: {rmse} K without loss", POINTS[point].0);

@@ -1,7 +1,7 @@
 //! Damaged model files: the three-house example with random damage, from a fixed seed. Nothing may
 //! panic or hang, and whatever is refused says why.
 //!
-//! `FUZZ_VARIANTS=100000 cargo test -p anergy-tests --test fuzz` looks further.
+//! `FUZZ_VARIANTS=100000 cargo test -p anergy-tests --test model fuzz::` looks further.
 
 #![allow(clippy::unwrap_used)]
 

@@ -116,7 +116,7 @@ const MWH: f64 = 3.6e9;
 const KWH: f64 = 3.6e6;
 
 /// The command that writes the tables.
-const COMMAND: &str = "LABORATORY=all cargo test --workspace --test laboratory_houses";
+const COMMAND: &str = "LABORATORY=all cargo test --workspace --test prosumers laboratory_houses::";
 /// What burns or pumps heat, the boilers behind it.
 const FIRST: [&str; 4] = ["chp", "heat_pump", "stirling", "small_chp"];
 const ENGINES: [&str; 5] = ["chp", "heat_pump", "stirling", "small_chp", "large_chp"];

@@ -57,5 +57,5 @@ fn the_splitting_error_falls_at_least_with_the_step() {
         let cells = errors.map(|e| format!("{e:.4}")).join(" | ");
         writeln!(table, "| `{wall}` ({words}) | {cells} |").unwrap();
     }
-    write_table("pipe_steps", "errors", "cargo test --workspace --test pipe_steps", &table);
+    write_table("pipe_steps", "errors", "cargo test --workspace --test heat pipe_steps::", &table);
 }

@@ -46,7 +46,7 @@ fn least(kind: &str) -> Value {
         | "electric_load"
         | "electric_vehicle"
         | "grid_connection" => json!({}),
-        _ => panic!("say in tests/every_unit.rs what a {kind} needs"),
+        _ => panic!("say in tests/prosumers/every_unit.rs what a {kind} needs"),
     }
 }
 

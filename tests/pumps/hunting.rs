@@ -200,7 +200,7 @@ fn the_table_of_gains_is_reproduced_and_only_what_hunts_is_flagged() {
         }
         page.push('\n');
     }
-    write_table("hunting", "gains", "cargo test --workspace --test hunting", &page);
+    write_table("hunting", "gains", "cargo test --workspace --test pumps hunting::", &page);
 }
 
 #[test]

@@ -102,7 +102,7 @@ fn check(name: &str) {
     };
     assert_eq!(solved, FOUND_BY_SOLVING.contains(&name), "{name}: found elsewhere:\n{message}");
     let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path("invalid/snapshots");
+    settings.set_snapshot_path("../invalid/snapshots");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings.set_description(text.lines().next().unwrap_or_default().trim_start_matches("# "));

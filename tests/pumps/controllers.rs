@@ -132,7 +132,7 @@ fn weighted(initial: &str, variant: &str, q_kw: f64) -> String {
 
 #[test]
 fn weighted_pi_control_does_not_let_the_near_feeder_block_the_far_one() {
-    // At fixed speeds 0.95 and 1 the far one has 9 % of the flow (tests/pump_blocking.rs).
+    // At fixed speeds 0.95 and 1 the far one has 9 % of the flow (tests/pumps/pump_blocking.rs).
     let mut simulation = start(&weighted("", "crossover", 4.0));
     run(&mut simulation, 7200.0, 1.0);
     for site in ["sf1", "sf2"] {

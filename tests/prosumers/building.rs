@@ -138,7 +138,7 @@ fn cases_of_the_guideline() {
         );
         assert!(largest.1.abs() <= limit, "case {number}: {largest:?}");
     }
-    write_table("building", "cases", "cargo test --workspace --test building", &table);
+    write_table("building", "cases", "cargo test --workspace --test prosumers building::", &table);
 }
 
 /// Two houses beside a pipe that only makes a network of it: one heated from a boiler, one cooled from a chiller.

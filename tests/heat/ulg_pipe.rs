@@ -156,7 +156,7 @@ fn outlets_of_the_measured_pipe() {
                 film_k.push(rms);
             }
         }
-        write_table("ulg_pipe", file, "cargo test --workspace --test ulg_pipe", &table);
+        write_table("ulg_pipe", file, "cargo test --workspace --test heat ulg_pipe::", &table);
     }
     assert!(film_k[0] < 0.35 && film_k[1] < 0.12, "{film_k:?}");
 }

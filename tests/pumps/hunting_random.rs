@@ -240,7 +240,7 @@ fn analysis_and_simulation_agree_on_what_grows() {
         100.0 * BAND
     );
     if grids >= 500 {
-        let command = "HUNTING=500 cargo test --workspace --test hunting_random";
+        let command = "HUNTING=500 cargo test --workspace --test pumps hunting_random::";
         write_table("hunting", "random grids", command, &table);
     } else {
         println!("{table}");

@@ -387,7 +387,9 @@ fn dependencies_point_downwards() {
     let mut findings = Vec::new();
     for (name, manifest) in manifests() {
         let Some((_, allowed)) = ALLOWED.iter().find(|(known, _)| *known == name) else {
-            findings.push(format!("crates/{name}: say in tests/tidy.rs on which crates it stands"));
+            findings.push(format!(
+                "crates/{name}: say in tests/model/tidy.rs on which crates it stands"
+            ));
             continue;
         };
         for dependency in dependencies(&manifest) {
@@ -500,7 +502,10 @@ fn public_numbers_carry_their_unit() {
         );
     }
     assert!(seen > 50, "only {seen} public numbers were found");
-    none(&findings, "a public number ends in its SI unit (or is a ratio listed in tests/tidy.rs)");
+    none(
+        &findings,
+        "a public number ends in its SI unit (or is a ratio listed in tests/model/tidy.rs)",
+    );
 }
 
 #[test]

@@ -370,7 +370,7 @@ fn all_published_cases() {
         let file = workspace().join("docs/src/validation/weighted-pi.md");
         let text = std::fs::read_to_string(&file).unwrap();
         let start = text.find("## Overview").unwrap();
-        let command = "`WEIGHTED_PI=all cargo test --release -p anergy-tests --test weighted_pi` (`make validate`)";
+        let command = "`WEIGHTED_PI=all cargo test --release -p anergy-tests --test pumps weighted_pi::` (`make validate`)";
         let text = format!(
             "{}## Overview\n{command}, {date}. Loops by how they end their slots, of 42 (7 slots, 3 stations, 2 loops).\n{overview}{tables}",
             &text[..start]

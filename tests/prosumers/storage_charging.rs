@@ -310,7 +310,7 @@ fn charging_in_waves() {
     page.push_str(&beside_ibpsa());
     println!("{page}");
     if writes_pages() {
-        write_page("storage", "cargo test --workspace --test storage_charging", &page);
+        write_page("storage", "cargo test --workspace --test prosumers storage_charging::", &page);
     }
 }
 
