@@ -16,11 +16,13 @@ import numpy as np
 
 import broken
 from detect import Look, shifted, slow, stratum
-from sensors import ROOT3, draw, measure, spoil
+from sensors import JUMPS_AT, ROOT3, draw, measure, spoil
 
 RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
 # Range of the expected gain in log-likelihood that is aimed at.
 STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
+# So much an effect of a sensor is at least, K, and a zero offset over the largest that is looked for: less is within what a class of sensors means.
+SMALLEST, SMALLEST_ZERO = {"S3": 0.6}, 0.3
 # Nats within which two effects are not told apart, and cosine of their signatures.
 TOGETHER, PARALLEL = 3.0, 0.99
 
@@ -75,6 +77,7 @@ class Draw:
                 self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, by_bias))
             else:
                 self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, 0.05 * by_gain))
+                self.effects.append(self.zero_of(s, channels, by_bias))
         for s in look.sensors:
             bias, gain, _ = s.limits(channels[s.truth][0])
             one = look.of_sensor(s, lambda y: y + 1.0)
@@ -84,15 +87,25 @@ class Draw:
             look.tolerate(look.of_sensor(s, shifted(self.rig["every_s"] / ROOT3)))
             look.tolerate(look.of_sensor(s, slow(max(s.lag_s, 1.0) * 0.2)), 1 / ROOT3)
             if s.kind == "k":
+                share = self.at_s / module.duration_s(self.rig)
                 self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, one))
+                self.effects.append(("S3", s.column, "drift_k", 0.0, 1.0, (-5, 5), None, look.shaped(s, share)))
+                self.effects.append(("S3", s.column, "step_k", 0.0, 1.0, (-5, 5), None, look.shaped(s, share > JUMPS_AT)))
             else:
                 self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, same))
+                if s.kind in ("kg_s", "m3_s"):
+                    self.effects.append(self.zero_of(s, channels, one))
             self.effects.append(("S4", s.column, "lag_s", 0.0, 30.0, (2, 180), None, look.of_sensor(s, slow(30.0))))
             self.effects.append(("S7", s.column, "clock_s", 0.0, 30.0, (-60, 60), None, look.of_sensor(s, shifted(30.0))))
         for id_, component, parameter, variant, first, range_, zero in self.plant:
             self.effects.append((id_, component, parameter, zero, first, range_, variant, look.of(channels, k)))
             k += 1
         look.ready()
+
+    def zero_of(self, sensor, channels, signature):
+        """A flow meter that reads too much by a constant; `signature` is that of one unit."""
+        top = 0.03 * np.max(np.abs(channels[sensor.truth][0]))
+        return "S8", sensor.column, f"offset_{sensor.kind}", 0.0, top, (-top, top), None, top * signature
 
     def near(self, component):
         """What has nothing between it and this component."""
@@ -112,7 +125,8 @@ class Draw:
             return float(low * (rng.choice([-1, 1]) if id_ == "S7" else 1))
         share = np.sqrt(wanted / max(self.look.gain(signature), 1e-9))
         sign = rng.choice([-1, 1]) if lo < zero < hi and id_ not in self.module.ONE_SIDED else 1
-        size = max(share * abs(first - zero), getattr(self.module, "SMALLEST", {}).get(id_, 0.0) * rng.uniform(1, 1.5))
+        smallest = SMALLEST_ZERO * hi if id_ == "S8" else (SMALLEST | getattr(self.module, "SMALLEST", {})).get(id_, 0.0)
+        size = max(share * abs(first - zero), smallest * rng.uniform(1, 1.5))
         return float(np.clip(zero + sign * np.sign(first - zero) * size, lo, hi))
 
     def gain(self, effect, value):

@@ -55,6 +55,10 @@ class Look:
             out.append(self.sampled(make(y)) - self.sampled(y) if s is sensor else np.zeros(self.at_s.size))
         return np.concatenate(out) / self.sigma
 
+    def shaped(self, sensor, shape):
+        """Signature of what a sensor adds in the course of time."""
+        return np.concatenate([shape if s is sensor else np.zeros(self.at_s.size) for s in self.sensors]) / self.sigma
+
     def tolerate(self, signature, sd=1.0):
         self.g = np.column_stack([self.g, sd * signature])
 

@@ -138,7 +138,7 @@ def two_boilers(p, flow, t_ret, load_a, load_b, shape, out):
             z = (2 * k + 0.5) * total / 20
             out[k, i] = t_at(t, z, total)
         out[10, i], out[11, i], out[12, i] = t_out[0], t_out[1], t_supply
-        out[13, i], out[14, i], out[15, i], out[16, i] = max(m_a, 0.0), m_b, fuel[0], fuel[1]
+        out[13, i], out[14, i], out[15, i], out[16, i] = m_a, m_b, fuel[0], fuel[1]
         out[17, i], out[18, i] = m_storage, t_back
 
 
@@ -207,10 +207,19 @@ def heat_pump_house(p, flow, t_ret, load, aux, shape, out):
                 else:
                     back = min((ice - 300.0) / 120.0, 1.0)
                     heat, power = heat * back, power * back
+                    if ice == 301.0:
+                        frost = 1.0
                     if ice >= 420.0:
-                        ice, frost = -1.0, 0.0
+                        ice = -1.0
             heater = p[15] * np.ceil(3 * aux[i] - 1e-6) / 3.0 * min(run / 10.0, 1.0)
+        elif 0.0 <= ice < 300.0:
+            # Ice that melts is melted to the end.
+            ice += 1.0
+            m, heat, power = p[10], -p[14] * max(speed, 0.6), 1200.0
+            off = 0.0
         else:
+            if ice >= 0:
+                ice, frost = -1.0, 0.0
             run = 0.0
             off += 1.0
             if off <= 60.0:

@@ -112,9 +112,8 @@ class Pipe:
         self.dx = self.length / cells
         self.t = np.repeat(row(t_degc)[:, None], cells, axis=1)
         self.wall = self.t.copy()
-        share = self.ground_r / (self.resistance + self.ground_r)
-        around = self.t if around_degc is None else row(around_degc)[:, None]
-        self.ground = around + share[:, None] * (self.t - around)
+        # Ground that no pipe has warmed before.
+        self.ground = self.t.copy() if around_degc is None else np.repeat(row(around_degc)[:, None], cells, axis=1)
         self.before = None
         self.dp = np.zeros(variants)
 
@@ -139,4 +138,29 @@ class Pipe:
         out = _all(self.t, self.wall, self.ground, before, t_in, m, around, steps, self.dx, self.area, self.wall_j, film, loss,
                    self.spread, self.ground_j, self.ground_r, _H, _C)
         self.before = t_in
+        return out
+
+
+class Plug:
+    """A piece behind a pipe: what enters leaves after its content has passed, as it was (volumes in kg)."""
+
+    def __init__(self, content_kg, t_degc, seconds):
+        count = len(content_kg)
+        self.content, self.start = np.asarray(content_kg, float), t_degc
+        self.passed, self.entered, self.n = np.zeros((count, seconds + 1)), np.zeros((count, seconds)), 0
+
+    def second(self, m_flow_kg_s, t_in):
+        """One second; the temperature at its outlet, in the middle of it."""
+        i = self.n
+        self.n += 1
+        self.entered[:, i] = t_in
+        self.passed[:, i + 1] = self.passed[:, i] + m_flow_kg_s
+        out = np.array(t_in, float)
+        for k in np.flatnonzero(self.content > 0):
+            leaves = 0.5 * (self.passed[k, i] + self.passed[k, i + 1]) - self.content[k]
+            if leaves <= 0:
+                out[k] = self.start
+            else:
+                j = np.searchsorted(self.passed[k, : i + 2], leaves, side="left") - 1
+                out[k] = self.entered[k, max(j, 0)]
         return out

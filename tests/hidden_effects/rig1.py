@@ -5,8 +5,8 @@ Rich: temperatures between and behind the pipes, pressure losses of both. Poor: 
 
 import numpy as np
 
-from pipe import Pipe
-from sensors import FLOW, TEMPERATURE, Sensor
+from pipe import Pipe, Plug
+from sensors import FLOW, SPARE_S, TEMPERATURE, Sensor
 
 NAME = "R1"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -14,7 +14,7 @@ FIRST_S = 200  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 AS_BUILT = {"P1"}  # as strong as the pipe is thick
-ONE_SIDED = {"P5", "P7", "P8", "S4"}
+ONE_SIDED = {"P4", "P5", "P6", "P7", "P8", "S4"}
 
 
 def _inlet(p, bias, gain, as_is=False):
@@ -29,8 +29,13 @@ def _flow(p, bias, gain, as_is=False):
 INPUTS = {"inlet.t": _inlet, "flow": _flow}
 
 
+def block_s(rig):
+    """Length of a block; with the ground in mind hours."""
+    return 2400.0 if rig.get("long") else BLOCK_S
+
+
 def duration_s(rig):
-    return BLOCK_S * BLOCKS
+    return block_s(rig) * BLOCKS
 
 
 def draw(rng, rich):
@@ -62,22 +67,23 @@ def draw(rng, rich):
 
 def program(rig):
     """Inlet temperature and flow of every second."""
-    n = int(BLOCK_S * BLOCKS) + 120
+    block, slow = block_s(rig), 0.35 if rig.get("long") else 1.0
+    n = int(block * BLOCKS) + SPARE_S
     t = np.arange(n, dtype=float)
     points_t, points = [0.0], [rig["start"]]
     flow = np.empty(n)
     for i, level in enumerate(rig["levels"]):
-        begin = i * BLOCK_S + rig["delays"][i]
+        begin = i * block + rig["delays"][i]
         points_t += [begin, begin + rig["ramps"][i]]
         points += [points[-1], level]
-        flow[int(i * BLOCK_S) :] = rig["flows"][i]
+        flow[int(i * block) :] = slow * rig["flows"][i]
     rng = np.random.default_rng(rig["seed"])
     wobble = np.zeros(n)
     for i in range(1, n):  # the demand is never quiet
         wobble[i] = 0.98 * wobble[i - 1] + 0.2 * rng.normal()
     flow *= 1 + 0.005 * np.clip(wobble, -3, 3)
     for i in rig["pauses"]:
-        begin = int((i + 1) * BLOCK_S - rig["pause_s"][i] - 20)
+        begin = int((i + 1) * block - rig["pause_s"][i] - 20)
         flow[begin : begin + int(rig["pause_s"][i])] = 0.0
     flow = np.where(flow == 0, 0, np.convolve(np.pad(flow, 10, mode="edge"), np.full(21, 1 / 21), "valid"))  # pumps ramp
     inlet = np.interp(t, points_t, points) + 0.3 * np.sin(2 * np.pi * t / rig["period"])
@@ -92,7 +98,7 @@ def neutral(rig):
         geometry = STEEL * np.pi / 4 * (pipe["outer"] ** 2 - pipe["inner"] ** 2)
         p |= {f"{n}.length": 1.0, f"{n}.loss": 1.0, f"{n}.around_k": 0.0, f"{n}.film": 1.0, f"{n}.dispersion": 0.004,
               f"{n}.standstill": 1.0, f"{n}.friction": 1.0, f"{n}.wall": geometry if pipe["wall"] else 0.0,
-              f"{n}.parallel": 0.0, f"{n}.window": 0.0, f"{n}.heater_w": 0.0}
+              f"{n}.piece": 0.0, f"{n}.ground": 0.0, f"{n}.parallel": 0.0, f"{n}.window": 0.0, f"{n}.heater_w": 0.0}
     return p
 
 
@@ -105,11 +111,17 @@ def simulate(rig, variants):
         return np.array([v[key] for v in variants])
 
     pipes = []
+    plugs = {}
     for pipe in rig["pipes"]:
         k = pipe["name"]
-        pipes.append(Pipe(count, pipe["length"] * of(f"{k}.length"), pipe["inner"], of(f"{k}.wall"),
-                          pipe["resistance"] / of(f"{k}.loss"), rig["start"], pipe["roughness"], film=of(f"{k}.film"),
-                          dispersion_m2_s=of(f"{k}.dispersion"), standstill=of(f"{k}.standstill"), friction=of(f"{k}.friction")))
+        # Half of the resistance lies beyond the ground that is warmed.
+        ground, resistance = of(f"{k}.ground"), pipe["resistance"] / of(f"{k}.loss")
+        beyond = np.where(ground > 0, 0.5, 0.0) * resistance
+        if of(f"{k}.piece").any():
+            plugs[k] = Plug(of(f"{k}.piece") * 988.0, rig["start"], n + 300)
+        pipes.append(Pipe(count, pipe["length"] * of(f"{k}.length"), pipe["inner"], of(f"{k}.wall"), resistance - beyond, rig["start"],
+                          pipe["roughness"], film=of(f"{k}.film"), dispersion_m2_s=of(f"{k}.dispersion"), standstill=of(f"{k}.standstill"),
+                          friction=of(f"{k}.friction"), ground_j_m_k=ground, ground_k_m_w=np.maximum(beyond, 1e-3), around_degc=rig["around"]))
     short = {spec["name"]: Pipe(count, 0.25 * spec["length"], spec["inner"], 0.0, spec["resistance"], rig["start"])
              for spec in rig["pipes"] if of(f"{spec['name']}.parallel").any()}
     out = {f"{p['name']}.t": np.empty((count, n)) for p in rig["pipes"]} | {f"{p['name']}.dp": np.empty((count, n)) for p in rig["pipes"]}
@@ -129,6 +141,8 @@ def simulate(rig, variants):
                 t = (1 - share) * t + share * short[name].second(m * share, t_in, around)
             else:
                 t = pipe.second(m, t_in, around + own_k)
+            if name in plugs:
+                t = plugs[name].second(m, t)
             if second % 600 < 260 and flow[i] > 0:
                 t = t + heater_w / m / 4180.0
             out[f"{name}.t"][:, i] = t + 273.15
@@ -171,15 +185,19 @@ def effects(rig):
         yield "P2", n, "factor", (lambda x, n=n: {f"{n}.loss": x}), 1.5, (0.3, 6.0), 1.0
         yield "P3", n, "difference_k", (lambda x, n=n: {f"{n}.around_k": x}), 5.0, (-10.0, 10.0), 0.0
         if rig["pauses"]:
+            content = np.pi / 4 * pipe["inner"] ** 2 * pipe["length"]
+            yield "P6", n, "volume_m3", (lambda x, n=n: {f"{n}.piece": x}), 0.1 * content, (0.02 * content, 0.5 * content), 0.0
             yield "P5", n, "factor", (lambda x, n=n: {f"{n}.standstill": x}), 2.5, (0.2, 5.0), 1.0
         yield "P7", n, "dispersion_m2_s", (lambda x, n=n: {f"{n}.dispersion": max(x, 0.004)}), 0.1, (0.01, 1.0), 0.0
-        yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.08, (0.7, 1.3), 1.0
+        yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.02, (0.7, 1.3), 1.0
+        if rig.get("long"):
+            yield "P4", n, "capacity_j_m_k", (lambda x, n=n: {f"{n}.ground": x}), 1e5, (2e4, 5e5), 0.0
         if rig["rich"]:
             yield "P8", n, "factor", (lambda x, n=n: {f"{n}.friction": x}), 1.3, (0.5, 5.0), 1.0
 
 
 def model(rig):
-    lines = ["format = 1", "[model]", 'name = "bench"', "[run]", f'until = "{BLOCK_S * BLOCKS:.0f}s"', 'step = "5s"',
+    lines = ["format = 1", "[model]", 'name = "bench"', "[run]", f'until = "{duration_s(rig):.0f}s"', f'step = "{20 if rig.get("long") else 5}s"',
              'record = "10s"', f"initial_degc = {rig['start']:.1f}", "[fluid]", 'kind = "water"', "follow_temperature = true",
              "[ground]", f"temperature_degc = {rig['around']}", "[[node]]", 'id = "plant"', 'kind = "source"',
              f"m_flow_kg_h = {rig['flows'][0] * 3600:.0f}", f"temperature_degc = {rig['start']:.1f}"]
@@ -200,14 +218,13 @@ def model(rig):
 def split(rig):
     """Blocks of 5 min in turns, the first 40 s of each left out, of the whole 200 s."""
     turns = ["identify", "validate", "identify", "show"]
-    return "".join(f'[[block]]\nrole = "{turns[i % 4]}"\nfrom_s = {i * BLOCK_S + (40 if i else FIRST_S)}\nuntil_s = {(i + 1) * BLOCK_S - 1}\n'
+    return "".join(f'[[block]]\nrole = "{turns[i % 4]}"\nfrom_s = {i * block_s(rig) + (40 if i else 900 if rig.get("long") else FIRST_S)}\nuntil_s = {(i + 1) * block_s(rig) - 1}\n'
                    for i in range(BLOCKS))
 
 
-
 def is_show(rig, at_s):
-    block = (at_s // BLOCK_S).astype(int)
-    return (block % 4 == 3) & (at_s >= block * BLOCK_S + 40) & (at_s <= (block + 1) * BLOCK_S - 1)
+    block = (at_s // block_s(rig)).astype(int)
+    return (block % 4 == 3) & (at_s >= block * block_s(rig) + 40) & (at_s <= (block + 1) * block_s(rig) - 1)
 
 
 def unknown(rig, rng):

@@ -5,7 +5,7 @@
 import numpy as np
 
 import house
-from sensors import Sensor
+from sensors import SPARE_S, Sensor
 
 NAME = "R2"
 BLOCK_S, BLOCKS = 900.0, 12
@@ -37,7 +37,7 @@ def duration_s(rig):
 
 def draw(rng, rich):
     pump = bool(rng.random() < 0.5)
-    n = int(BLOCK_S * BLOCKS) + 120
+    n = int(BLOCK_S * BLOCKS) + SPARE_S
     loads = {"a": np.zeros(n), "b": np.zeros(n)}
     if pump:
         # Long runs, now and then a pause; the heater in some of them.
@@ -137,7 +137,7 @@ def sensors(rig):
             every += [Sensor(f"T_{name}", f"{name}.t_supply_k", "compare", truth=f"t_{name}", blank=f"m_{name}", **warm),
                       Sensor(f"gas_{name}", f"{name}.fuel_w", "compare", "flow_class_2", "W", f"fuel_{name}", quantisation=10.0)]
         if rich:
-            every += [Sensor(f"F_{name}", f"{name}.water.m_flow_kg_s", "compare", "mid", "kg_h", f"m_{name}", quantisation=1.0) for name in ("small", "large")]
+            every += [Sensor(f"F_{name}", f"{name}.water.m_flow_kg_s", "compare", "mid", "kg_h", f"m_{name}", quantisation=1.0, signed=True) for name in ("small", "large")]
     for k in range(10):
         if rich or k in (1, 8):
             every.append(Sensor(f"TS{k + 1}", f"storage.t_{2 * k + 1}_k", "compare", "surface", "degC", f"ts{k + 1}", quantisation=0.1, lag_s=60.0))

@@ -8,7 +8,7 @@ at the joint of the first house and at the third, pressure losses of both lines.
 import numpy as np
 
 from pipe import Pipe
-from sensors import TEMPERATURE, Sensor
+from sensors import SPARE_S, TEMPERATURE, Sensor
 
 NAME = "R3"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -16,8 +16,10 @@ FIRST_S = 280  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 AS_BUILT = {"P1"}
-ONE_SIDED = {"P5", "P7", "P8", "S4"}
+ONE_SIDED = {"H4", "P5", "P7", "P8", "P11", "S4"}
 PIPES = [("stub1", "b1", "j1"), ("line12", "j1", "j2"), ("stub2", "b2", "j2"), ("line23", "j2", "j3")]
+# So much an effect is at least: less is the tolerance of another pump or valve of the same kind.
+SMALLEST = {"H3": 0.06, "H4": 0.01, "P11": 0.004}
 KVS_CHECK = 6.0
 
 
@@ -50,7 +52,7 @@ def draw(rng, rich):
 
 
 def program(rig):
-    n = int(BLOCK_S * BLOCKS) + 120
+    n = int(BLOCK_S * BLOCKS) + SPARE_S
     t = np.arange(n, dtype=float)
 
     def steps(values, ramp, shift):
@@ -75,7 +77,7 @@ def program(rig):
 
 
 def neutral(rig):
-    p = {"around_k": 0.0, "drift_k": 0.3, "t1_k": 0.0, "t2_k": 0.0, "head1": 1.0, "head2": 1.0, "kv": 1.0, "extra1": 0.0}
+    p = {"around_k": 0.0, "drift_k": 0.3, "t1_k": 0.0, "t2_k": 0.0, "head1": 1.0, "head2": 1.0, "kv": 1.0, "extra1": 0.0, "open1": 0.0, "open2": 0.0, "leak": 0.0}
     for pipe in rig["pipes"]:
         n = pipe["name"]
         geometry = STEEL * np.pi / 4 * (pipe["outer"] ** 2 - pipe["inner"] ** 2)
@@ -105,34 +107,47 @@ def simulate(rig, variants):
     out = {c: np.empty((count, n)) for c in ("m1", "m2", "m3", "j1.t", "j2.t", "j3.t", "line12.dp", "line23.dp")}
     per_kg = {k: np.full(count, 1e4) for k in pipes}  # Pa/(kg/s)^2
     check = 1e5 * (3600 / (rho * KVS_CHECK)) ** 2 * rho / 1000
-    pump = rig["head"] * 100 / (rig["free"] / 60000 * rho) ** 2
+    # A weaker pump has less head at every flow.
+    pump = {k: head[k] / (rig["free"] / 60000 * rho) ** 2 for k in (1, 2)}
     t1 = t2 = tj1 = tj2 = np.full(count, rig["start"])
+    outlet, open_, leak = 1.5e5, {k: 1e-5 + of(f"open{k}") for k in (1, 2)}, of("leak")
     for second in range(-300, n):
         i = max(second, 0)
         valve = 1e5 * (3600 / (rho * rig["kvs"] * kv * inputs["kappa"][i])) ** 2 * rho / 1000
         common = per_kg["line23"] + valve
-        own1 = pump + check + per_kg["stub1"] + per_kg["line12"] + extra * (second > 1500)
-        own2 = pump + check + per_kg["stub2"]
-        e1, e2 = (head[k] * inputs[f"n{k}"][i] ** 2 for k in (1, 2))
-        low, high = np.zeros(count), np.sqrt(np.maximum(e1, e2) / common)
+        own = {1: pump[1] + per_kg["stub1"] + per_kg["line12"] + extra * (second > 1500), 2: pump[2] + per_kg["stub2"]}
+        heads = {k: head[k] * inputs[f"n{k}"][i] ** 2 for k in (1, 2)}
+
+        def branches(m):
+            """Flows of both branches with so much to the third house: back only what a closed check valve lets through."""
+            drops = {k: heads[k] - common * m * m for k in (1, 2)}
+            return [np.where(d > 0, np.sqrt(np.maximum(d, 0) / (own[k] + check)), -np.sqrt(np.maximum(-d, 0) / (own[k] + check / open_[k] ** 2)))
+                    for k, d in drops.items()]
+
+        def lost(m):
+            return leak * np.sqrt((outlet + common * m * m) / 1e5)
+
+        low, high = np.zeros(count), np.sqrt(np.maximum(heads[1], heads[2]) / common)
         for _ in range(30):
             m = (low + high) / 2
-            got = np.sqrt(np.maximum(e1 - common * m * m, 0) / own1) + np.sqrt(np.maximum(e2 - common * m * m, 0) / own2)
-            low, high = np.where(got > m, m, low), np.where(got > m, high, m)
-        m1, m2 = np.sqrt(np.maximum(e1 - common * m * m, 0) / own1), np.sqrt(np.maximum(e2 - common * m * m, 0) / own2)
-        m1, m2 = np.where(m1 < 1e-4, 0.0, m1), np.where(m2 < 1e-4, 0.0, m2)
-        flows = {"stub1": m1, "line12": m1, "stub2": m2, "line23": m1 + m2}
+            more = sum(branches(m)) > m + lost(m)
+            low, high = np.where(more, m, low), np.where(more, high, m)
+        m1, m2 = (np.where(np.abs(x) < 1e-4, 0.0, x) for x in branches(m))
+        total = np.maximum(m1 + m2 - lost(m), 0.0)
+        flows = {"stub1": m1, "line12": m1, "stub2": m2, "line23": total}
         around = rig["around"] + around_k + drift_k * np.sin(2 * np.pi * i / 4000)
         heat = {k: np.where(flows[k] > 1e-3, heater[k] * (second % 600 < 260) / np.maximum(flows[k], 0.02) / 4180.0, 0.0) for k in pipes}
-        t1 = pipes["stub1"].second(m1, inputs["t1"][i] + t_k[1], around + own_k["stub1"]) + heat["stub1"]
-        tj1 = np.where(m1 > 0, t1, tj1)
-        t12 = pipes["line12"].second(m1, tj1, around + own_k["line12"]) + heat["line12"]
-        t2 = pipes["stub2"].second(m2, inputs["t2"][i] + t_k[2], around + own_k["stub2"]) + heat["stub2"]
-        total = m1 + m2
-        tj2 = np.where(total > 0, (m1 * t12 + m2 * t2) / np.maximum(total, 1e-9), tj2)
+        # What flows back comes from the joint behind.
+        t1 = pipes["stub1"].second(m1, np.where(m1 < 0, tj1, inputs["t1"][i] + t_k[1]), around + own_k["stub1"]) + heat["stub1"]
+        t12 = pipes["line12"].second(m1, np.where(m1 < 0, tj2, np.where(m1 > 0, t1, tj1)), around + own_k["line12"]) + heat["line12"]
+        tj1 = np.where(m1 > 0, t1, np.where(m1 < 0, t12, tj1))
+        t2 = pipes["stub2"].second(m2, np.where(m2 < 0, tj2, inputs["t2"][i] + t_k[2]), around + own_k["stub2"]) + heat["stub2"]
+        to_joint = np.maximum(m1, 0) + np.maximum(m2, 0)
+        mixed = (np.maximum(m1, 0) * t12 + np.maximum(m2, 0) * t2) / np.maximum(to_joint, 1e-9)
+        tj2 = np.where(to_joint > 0, mixed, tj2)
         tj3 = pipes["line23"].second(total, tj2, around + own_k["line23"]) + heat["line23"]
         for k, p in pipes.items():
-            per_kg[k] = np.where(flows[k] > 1e-3, p.dp / np.maximum(flows[k], 1e-3) ** 2, per_kg[k])
+            per_kg[k] = np.where(np.abs(flows[k]) > 1e-3, np.abs(p.dp) / np.maximum(np.abs(flows[k]), 1e-3) ** 2, per_kg[k])
         for c, x in (("m1", m1), ("m2", m2), ("m3", total), ("j1.t", tj1 + 273.15), ("j2.t", tj2 + 273.15), ("j3.t", tj3 + 273.15),
                      ("line12.dp", pipes["line12"].dp), ("line23.dp", pipes["line23"].dp)):
             out[c][:, i] = x
@@ -144,7 +159,7 @@ def simulate(rig, variants):
 
 
 def sensors(rig):
-    flow = dict(unit="kg_h", quantisation=1.0, klass="mid" if rig["rich"] else "flow_class_2")
+    flow = dict(unit="kg_h", quantisation=1.0, klass="mid" if rig["rich"] else "flow_class_2", signed=rig["rich"])
     command = dict(role="input", klass="electric_0_2", unit="1", quantisation=0.001)
     every = [Sensor("T_1", "s1.temperature_k", "input", "pt100_a", truth="t1", **TEMPERATURE),
              Sensor("T_2", "s2.temperature_k", "input", "pt100_a", truth="t2", **TEMPERATURE),
@@ -154,7 +169,8 @@ def sensors(rig):
              Sensor("flow_2", "pump2.m_flow_kg_s", "compare", truth="m2", **flow),
              Sensor("T_3", "j3.t_k", "compare", "pt100_a", truth="j3.t", **TEMPERATURE)]
     if rig["rich"]:
-        every += [Sensor("T_j1", "j1.t_k", "compare", "pt100_a", truth="j1.t", blank="m1", **TEMPERATURE),
+        every += [Sensor("flow_3", "valve3.m_flow_kg_s", "compare", truth="m3", **flow),
+                  Sensor("T_j1", "j1.t_k", "compare", "pt100_a", truth="j1.t", blank="m1", **TEMPERATURE),
                   Sensor("dp_12", "line12.dp_pa", "compare", "dp_0_25", truth="line12.dp", unit="hPa", quantisation=0.1),
                   Sensor("dp_23", "line23.dp_pa", "compare", "dp_0_25", truth="line23.dp", unit="hPa", quantisation=0.1)]
     return every
@@ -179,10 +195,15 @@ def effects(rig):
         yield "P2", n, "factor", (lambda x, n=n: {f"{n}.loss": x}), 1.5, (0.3, 6.0), 1.0
         yield "P3", n, "difference_k", (lambda x, n=n: {f"{n}.around_k": x}), 5.0, (-10.0, 10.0), 0.0
         yield "P5", n, "factor", (lambda x, n=n: {f"{n}.standstill": x}), 2.5, (0.2, 5.0), 1.0
-        yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.08, (0.7, 1.3), 1.0
+        yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.02, (0.7, 1.3), 1.0
         yield "P8", n, "factor", (lambda x, n=n: {f"{n}.friction": x}), 1.3, (0.5, 5.0), 1.0
-    for k in (1, 2) if rig.get("heads") else ():  # explain does not know it
-        yield "H3", f"pump{k}", "factor", (lambda x, k=k: {f"head{k}": x}), 0.92, (0.7, 1.3), 1.0
+    for k in (1, 2):
+        yield "H3", f"pump{k}", "factor", (lambda x, k=k: {f"head{k}": x}), 0.95, (0.7, 1.3), 1.0
+    if rig["rich"]:
+        # Meters on both sides, and those that read backwards.
+        for k in (1, 2) if rig["off"][1] else (2,):
+            yield "H4", f"check{k}", "share", (lambda x, k=k: {f"open{k}": x}), 0.02, (0.004, 0.1), 0.0
+        yield "P11", "j2", "m_flow_kg_s", (lambda x: {"leak": x}), 0.005, (0.001, 0.03), 0.0
 
 
 def unknown(rig, rng):

@@ -9,6 +9,10 @@ ROOT3 = 3**0.5
 # A value in SI as a reading.
 UNITS = {"degC": (1.0, -273.15), "K": (1.0, 0.0), "kg_h": (3600.0, 0.0), "l_h": (3.6e6, 0.0), "hPa": (0.01, 0.0),
          "kW": (1e-3, 0.0), "W": (1.0, 0.0), "1": (1.0, 0.0), "percent": (100.0, 0.0)}
+# Share of a run after which a sensor jumps.
+JUMPS_AT = 0.42
+# Seconds that truths go on after the last reading.
+SPARE_S = 120
 # Resolution, lag.
 TEMPERATURE = dict(unit="degC", quantisation=0.1)
 FLOW = dict(unit="kg_h", quantisation=1.0)
@@ -25,6 +29,7 @@ class Sensor:
     quantisation: float = 0.0
     lag_s: float = 0.0
     clock: str = "logger"
+    signed: bool = False  # reads backward flow as such
     blank: str = ""  # channel of the flow without which it reads nothing, as heat meters do
     draws: dict = field(default_factory=dict)
 
@@ -56,7 +61,7 @@ class Sensor:
         effect = effect or {}
         x = np.interp(at_s + effect.get("clock_s", 0.0), np.arange(y.size), lagged(y, self.lag_s + effect.get("lag_s", 0.0)))
         factor, offset = UNITS[self.unit]
-        return (effect.get("gain", 1.0) * x + effect.get("bias_k", 0.0)) * factor + offset
+        return (effect.get("gain", 1.0) * x + own_offset(effect, at_s, y.size)) * factor + offset
 
     def toml(self):
         lines = [f'column = "{self.column}"', f'signal = "{self.signal}"', f'unit = "{self.unit}"', f'role = "{self.role}"']
@@ -68,6 +73,14 @@ class Sensor:
             lines.append(f"lag_s = {self.lag_s}")
         lines.append(f'clock = "{self.clock}"')
         return "[[sensor]]\n" + "\n".join(lines) + "\n"
+
+
+def own_offset(effect, at_s, duration_s):
+    """What a sensor adds, SI: constant, or a drift or a jump in the course of a run of so many seconds."""
+    share = at_s / (duration_s - SPARE_S)
+    jump = effect.get("step_k", 0.0) * (share > JUMPS_AT)
+    constant = effect.get("bias_k", 0.0) + effect.get("offset_kg_s", 0.0) + effect.get("offset_m3_s", 0.0)
+    return constant + effect.get("drift_k", 0.0) * share + jump
 
 
 def lagged(y, tau):
@@ -113,11 +126,14 @@ def measure(sensor, y, at_s, rng, clock_s=0.0, effect=None):
     times = at_s + rng.uniform(-1, 1, at_s.size) + clock_s + effect.get("clock_s", 0.0)
     x = np.interp(times, np.arange(y.size), behind)
     _, _, noise = sensor.limits(y)
-    x = sensor.draws["gain"] * effect.get("gain", 1.0) * x + sensor.draws["bias"] + effect.get("bias_k", 0.0)
+    x = sensor.draws["gain"] * effect.get("gain", 1.0) * x + sensor.draws["bias"]
     x = x + noise * rng.normal(size=x.size) + 0.5 * noise * pink(x.size, rng)
     if sensor.kind in ("kg_s", "m3_s"):
-        x = np.where(np.interp(times, np.arange(y.size), y) < 1e-6, 0.0, x)  # low-flow cut-off
-        x = np.maximum(x, 0.0)
+        x = np.where(np.abs(np.interp(times, np.arange(y.size), y)) < 1e-6, 0.0, x)  # low-flow cut-off
+        x = x + own_offset(effect, at_s, y.size)
+        x = x if sensor.signed else np.maximum(x, 0.0)
+    elif sensor.kind == "k":
+        x = x + own_offset(effect, at_s, y.size)
     if sensor.kind == "1":
         x = np.maximum(x, 0.0)  # commands
     factor, offset = UNITS[sensor.unit]
