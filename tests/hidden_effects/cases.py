@@ -75,6 +75,9 @@ class Draw:
             look.tolerate(by_gain, gain / ROOT3)
             if s.kind == "k":
                 self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, by_bias))
+                if module.FLOWS_THROUGH:  # what enters leaves within minutes: a slow change shows as an offset of that moment does
+                    for parameter, shape in self.shapes():
+                        self.effects.append(("S3", s.column, parameter, 0.0, 1.0, (-5, 5), None, by_bias * np.tile(shape, len(look.sensors))))
             else:
                 self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, 0.05 * by_gain))
                 self.effects.append(self.zero_of(s, channels, by_bias))
@@ -87,10 +90,9 @@ class Draw:
             look.tolerate(look.of_sensor(s, shifted(self.rig["every_s"] / ROOT3)))
             look.tolerate(look.of_sensor(s, slow(max(s.lag_s, 1.0) * 0.2)), 1 / ROOT3)
             if s.kind == "k":
-                share = self.at_s / module.duration_s(self.rig)
                 self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, one))
-                self.effects.append(("S3", s.column, "drift_k", 0.0, 1.0, (-5, 5), None, look.shaped(s, share)))
-                self.effects.append(("S3", s.column, "step_k", 0.0, 1.0, (-5, 5), None, look.shaped(s, share > JUMPS_AT)))
+                for parameter, shape in self.shapes():
+                    self.effects.append(("S3", s.column, parameter, 0.0, 1.0, (-5, 5), None, look.shaped(s, shape)))
             else:
                 self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, same))
                 if s.kind in ("kg_s", "m3_s"):
@@ -101,6 +103,11 @@ class Draw:
             self.effects.append((id_, component, parameter, zero, first, range_, variant, look.of(channels, k)))
             k += 1
         look.ready()
+
+    def shapes(self):
+        """What a sensor adds in the course of a run: a drift, a jump."""
+        share = self.at_s / self.module.duration_s(self.rig)
+        return ("drift_k", share), ("step_k", 1.0 * (share > JUMPS_AT))
 
     def zero_of(self, sensor, channels, signature):
         """A flow meter that reads too much by a constant; `signature` is that of one unit."""
@@ -265,7 +272,7 @@ def case_set(d, out, counts, tag):
     return answers
 
 
-COUNTS = {"null": 3, "single": {"hard": 1, "medium": 2, "easy": 3}, "pair": 1, "unknown": 1, "data": 1}
+COUNTS = {"null": 4, "single": {"hard": 1, "medium": 2, "easy": 3}, "pair": 1, "unknown": 1, "data": 1}
 
 
 def main():
@@ -276,9 +283,10 @@ def main():
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("--nulls", type=int, default=COUNTS["null"])
     parser.add_argument("--only-nulls", action="store_true")
+    parser.add_argument("--counts", type=json.loads, default={}, help='other numbers of cases of a draw, as {"pair": 0, "single": {"easy": 2}}')
     parser.add_argument("--sensors", choices=["both", "rich", "poor"], default="both", help="both: in turns")
     wanted = parser.parse_args()
-    counts = dict(COUNTS, null=wanted.nulls)
+    counts = dict(COUNTS, null=wanted.nulls) | wanted.counts
     if wanted.only_nulls:
         counts = {"null": wanted.nulls, "single": {}, "pair": 0, "unknown": 0, "data": 0}
     module = importlib.import_module(RIGS[wanted.rig])

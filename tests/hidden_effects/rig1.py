@@ -13,6 +13,7 @@ BLOCK_S, BLOCKS = 300.0, 12
 FIRST_S = 200  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
+FLOWS_THROUGH = True  # without storages
 AS_BUILT = {"P1"}  # as strong as the pipe is thick
 ONE_SIDED = {"P4", "P5", "P6", "P7", "P8", "S4"}
 

@@ -11,6 +11,7 @@ NAME = "R2"
 BLOCK_S, BLOCKS = 900.0, 12
 FIRST_S = 240
 AGREES_K = 0.25  # with anergy, median, where nothing is hidden
+FLOWS_THROUGH = False  # without storages
 AS_BUILT = set()
 ONE_SIDED = {"T3", "T4", "G4", "H1", "H2", "S4"}
 # So much an effect is at least: less is the tolerance of another unit of the same kind.

@@ -6,6 +6,7 @@ at the joint of the first house and at the third, pressure losses of both lines.
 """
 
 import numpy as np
+from numba import njit
 
 from pipe import Pipe
 from sensors import SPARE_S, TEMPERATURE, Sensor
@@ -15,6 +16,7 @@ BLOCK_S, BLOCKS = 300.0, 12
 FIRST_S = 280  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
+FLOWS_THROUGH = True  # without storages
 AS_BUILT = {"P1"}
 ONE_SIDED = {"H4", "P5", "P7", "P8", "P11", "S4"}
 PIPES = [("stub1", "b1", "j1"), ("line12", "j1", "j2"), ("stub2", "b2", "j2"), ("line23", "j2", "j3")]
@@ -86,6 +88,32 @@ def neutral(rig):
     return p
 
 
+@njit(cache=True)
+def branch(pressure, own, check, open_):
+    """Flow of a branch that this pressure drives: back only what the closed check valve lets through."""
+    return np.sqrt(pressure / (own + check)) if pressure >= 0 else -np.sqrt(-pressure / (own + check / open_**2))
+
+
+@njit(cache=True)
+def flows_of(head1, head2, own1, own2, common, check, open1, open2, leak, outlet):
+    """Flows of both branches and to the third house, with a hole at the joint: by halving."""
+    m1, m2, m3 = np.zeros(head1.size), np.zeros(head1.size), np.zeros(head1.size)
+    for k in range(head1.size):
+        low, high = 0.0, np.sqrt(max(head1[k], head2[k]) / common[k])
+        for _ in range(40):
+            m = 0.5 * (low + high)
+            drop = common[k] * m * m
+            m1[k], m2[k] = branch(head1[k] - drop, own1[k], check, open1[k]), branch(head2[k] - drop, own2[k], check, open2[k])
+            lost = leak[k] * np.sqrt((outlet + drop) / 1e5)
+            if m1[k] + m2[k] > m + lost:
+                low = m
+            else:
+                high = m
+        m1[k], m2[k] = m1[k] if abs(m1[k]) > 1e-4 else 0.0, m2[k] if abs(m2[k]) > 1e-4 else 0.0
+        m3[k] = max(m1[k] + m2[k] - lost, 0.0)
+    return m1, m2, m3
+
+
 def simulate(rig, variants):
     inputs, count = program(rig), len(variants)
     n = inputs["kappa"].size
@@ -117,23 +145,7 @@ def simulate(rig, variants):
         common = per_kg["line23"] + valve
         own = {1: pump[1] + per_kg["stub1"] + per_kg["line12"] + extra * (second > 1500), 2: pump[2] + per_kg["stub2"]}
         heads = {k: head[k] * inputs[f"n{k}"][i] ** 2 for k in (1, 2)}
-
-        def branches(m):
-            """Flows of both branches with so much to the third house: back only what a closed check valve lets through."""
-            drops = {k: heads[k] - common * m * m for k in (1, 2)}
-            return [np.where(d > 0, np.sqrt(np.maximum(d, 0) / (own[k] + check)), -np.sqrt(np.maximum(-d, 0) / (own[k] + check / open_[k] ** 2)))
-                    for k, d in drops.items()]
-
-        def lost(m):
-            return leak * np.sqrt((outlet + common * m * m) / 1e5)
-
-        low, high = np.zeros(count), np.sqrt(np.maximum(heads[1], heads[2]) / common)
-        for _ in range(30):
-            m = (low + high) / 2
-            more = sum(branches(m)) > m + lost(m)
-            low, high = np.where(more, m, low), np.where(more, high, m)
-        m1, m2 = (np.where(np.abs(x) < 1e-4, 0.0, x) for x in branches(m))
-        total = np.maximum(m1 + m2 - lost(m), 0.0)
+        m1, m2, total = flows_of(heads[1], heads[2], own[1], own[2], common, check, open_[1], open_[2], leak, outlet)
         flows = {"stub1": m1, "line12": m1, "stub2": m2, "line23": total}
         around = rig["around"] + around_k + drift_k * np.sin(2 * np.pi * i / 4000)
         heat = {k: np.where(flows[k] > 1e-3, heater[k] * (second % 600 < 260) / np.maximum(flows[k], 0.02) / 4180.0, 0.0) for k in pipes}

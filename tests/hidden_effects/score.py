@@ -9,6 +9,7 @@ Restartable: a case with a result of this engine (CASES/results-HASH/NAME.json) 
 import argparse
 import hashlib
 import json
+import random
 import subprocess
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -66,6 +67,7 @@ def main():
     parser.add_argument("--parallel", type=int, default=1, help="cases at once; explain itself uses all cores")
     parser.add_argument("--limit-s", type=float, default=180)
     parser.add_argument("--until", default="", help="HH:MM after which no case is begun")
+    parser.add_argument("--lot", type=int, default=1, help="seed of the order in which cases are run, so that a score that is cut off is still that of a sample")
     parser.add_argument("--only", default="", help="cases whose name begins so")
     parser.add_argument("--note", default="", help="a sentence more at the head of the page")
     parser.add_argument("--engine", default="", help="revision of anergy, for the count")
@@ -74,7 +76,8 @@ def main():
     results = wanted.cases / (wanted.results or of_engine)
     results.mkdir(exist_ok=True)
     answers = json.loads((wanted.cases / "answers.json").read_text())
-    cases = [wanted.cases / name for name in answers if name.startswith(wanted.only)]
+    cases = [wanted.cases / name for name in sorted(answers) if name.startswith(wanted.only)]
+    random.Random(wanted.lot).shuffle(cases)
 
     def one(case):
         if not wanted.until or time.strftime("%H:%M") < wanted.until:
