@@ -105,6 +105,7 @@ const WITHOUT_SUFFIX: &[&str] = &[
     "gain_share",
     "initial_soc",
     "k_diffuse",
+    "power_factor",
     "power_slope",
     "rod_modulation",
     "season_amplitude",

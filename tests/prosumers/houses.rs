@@ -107,6 +107,7 @@ kind = "electric_vehicle"
 site = "h"
 name = "grid"
 kind = "grid_connection"
+power_factor = { roof = -0.8, household = 0.8 }
 
 [[circuit]]
 site = "h"
@@ -304,6 +305,9 @@ fn the_phases_of_the_connection_are_those_of_its_units() {
         let spread_w = phases.iter().fold(f64::MIN, |m, w| m.max(*w))
             - phases.iter().fold(f64::MAX, |m, w| m.min(*w));
         assert!((of("grid.asymmetry_w") - spread_w).abs() < 1e-9);
+        // cos phi = 0.8: 0.75 var per W, given where it leads.
+        let reactive_var = 0.75 * (of("household.electric_w") - of("roof.electric_w"));
+        assert!((of("grid.reactive_var") - reactive_var).abs() < 1e-9 * (1.0 + reactive_var.abs()));
         largest_w = largest_w.max(spread_w);
     }
     // The roof of 10 kW stands on one phase.

@@ -152,6 +152,104 @@ fn a_street_by_hand() {
 }
 
 #[test]
+fn costs_and_efficiency() {
+    // The plant pays for its pump 20, then 40 ct/kWh.
+    let meter = r#"
+[[unit]]
+site = "plant"
+name = "meter"
+kind = "grid_connection"
+fuel_price_eur_mwh = 140
+[[schedule]]
+signal = "plant.meter.import_price_eur_j"
+unit = "ct_kwh"
+points = [[0, 20], [3600, 40]]
+"#;
+    let mut run = simulation(&format!("{STREET}{meter}"));
+    let power_w = |run: &Simulation| channel(run, "plant.circulation_pump.power_w");
+    advance(&mut run, 3600.0, 60.0);
+    let before_w = power_w(&run);
+    advance(&mut run, 7200.0, 60.0);
+    let (after_w, kpis) = (power_w(&run), kpis(&run));
+    let cost_eur = before_w / 1000.0 * 0.20 + after_w / 1000.0 * 0.40;
+    assert_is(&kpis, &["units", "plant.meter", "electricity_cost_eur"], cost_eur, 1e-3 * cost_eur);
+    let booked_eur = number(&kpis, &["units", "plant.meter", "cost_eur"]);
+    assert_is(&kpis, &["units", "plant.meter", "electricity_cost_eur"], booked_eur, 0.0);
+    for of in [["sites", "plant"].as_slice(), &["network"]] {
+        assert_is(&kpis, &[of, &["cost_eur"]].concat(), booked_eur, 0.0);
+    }
+    // Who only takes from the grid and has a load gets all of it: 4 of 4 kWh.
+    assert_is(&kpis, &["sites", "house", "demand_kwh"], 4.0, 1e-9);
+    assert_is(&kpis, &["sites", "house", "efficiency"], 1.0, 1e-9);
+}
+
+#[test]
+fn exergy_lost_where_streams_meet() {
+    let text = r#"
+format = 1
+[run]
+initial = "steady"
+[fluid]
+kind = "constant_water"
+density_kg_m3 = 1000
+heat_capacity_j_kg_k = 4180
+[ground]
+kind = "constant"
+temperature_degc = 10
+[[node]]
+id = "warm"
+kind = "source"
+m_flow_kg_s = 0.1
+temperature_degc = 60
+[[node]]
+id = "cool"
+kind = "source"
+m_flow_kg_s = 0.1
+temperature_degc = 30
+[[node]]
+id = "meeting"
+[[node]]
+id = "out"
+kind = "pressure_boundary"
+pressure_bar = 1.5
+[[edge]]
+id = "warm_pipe"
+kind = "pipe"
+from = "warm"
+to = "meeting"
+length_m = 1
+inner_diameter_mm = 20
+[[edge]]
+id = "cool_pipe"
+kind = "pipe"
+from = "cool"
+to = "meeting"
+length_m = 1
+inner_diameter_mm = 20
+[[edge]]
+id = "out_pipe"
+kind = "pipe"
+from = "meeting"
+to = "out"
+length_m = 1
+inner_diameter_mm = 20
+"#;
+    // 0.1 ln(318.15^2/(333.15 * 303.15)) kg/s * 4180 J/(kg K) * 283.15 K = 263.39 W, in either direction of the last pipe.
+    for text in [
+        text.to_owned(),
+        text.replace("from = \"meeting\"\nto = \"out\"", "from = \"out\"\nto = \"meeting\""),
+    ] {
+        let mut run = simulation(&text);
+        advance(&mut run, 3600.0, 60.0);
+        assert_is(&kpis(&run), &["network", "exergy_lost_by_mixing_kwh"], 0.263_39, 1e-5);
+    }
+    // Streams of one temperature lose nothing.
+    let mut run = simulation(&text.replace("temperature_degc = 30", "temperature_degc = 60"));
+    advance(&mut run, 3600.0, 60.0);
+    assert_is(&kpis(&run), &["network", "exergy_lost_by_mixing_kwh"], 0.0, 1e-12);
+}
+
+#[test]
 fn demands_overlap() {
     // The house takes 3 kW, then 1 kW; a second one gives 1 kW, then 2 kW: 1 kWh of 4 and 1 kWh of 3 coincide,
     // 2 * 2/(4 + 3) = 0.571429. Of the heat given the second house gives 3 kWh.

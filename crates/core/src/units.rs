@@ -44,6 +44,9 @@ pub const UNITS: &[Unit] = &[
     unit("mw", "w", 1_000_000.0, 1.0),
     unit("kwh", "j", 3_600_000.0, 1.0),
     unit("mwh", "j", 3_600_000_000.0, 1.0),
+    unit("eur_kwh", "eur_j", 1.0, 3_600_000.0),
+    unit("ct_kwh", "eur_j", 1.0, 360_000_000.0),
+    unit("eur_mwh", "eur_j", 1.0, 3_600_000_000.0),
     unit("kj_kg_k", "j_kg_k", 1000.0, 1.0),
     unit("kw_k", "w_k", 1000.0, 1.0),
     unit("kj_k", "j_k", 1000.0, 1.0),
@@ -59,7 +62,8 @@ pub const UNITS: &[Unit] = &[
 /// SI suffixes that occur in names, longest first where one ends in another.
 pub const SI_SUFFIXES: &[&str] = &[
     "w_m_k", "k_m_w", "j_kg_k", "j_m_k", "j_k", "kg_m3", "m2_k_w", "w_m2_k", "m3_s", "m2_s", "m_s",
-    "kg_s", "pa_s", "1_s", "w_k", "w_m2", "rad", "m2", "m3", "kg", "pa", "j", "w", "s", "m", "k",
+    "kg_s", "pa_s", "eur_j", "1_s", "w_k", "w_m2", "rad", "m2", "m3", "kg", "pa", "j", "w", "s",
+    "m", "k",
 ];
 
 impl Unit {

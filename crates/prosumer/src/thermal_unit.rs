@@ -48,6 +48,10 @@ pub const OF_SITE: &str = "site.";
 pub const SITE_ELECTRICITY: &str = "site.electricity";
 /// Input `follows`: the electricity of all other units of the site and of its pumps, W.
 pub const SITE_GRID: &str = "site.grid";
+/// Input `follows`: the electricity that all units of the site generate from fuel, W.
+pub const SITE_COGENERATED: &str = "site.cogenerated";
+/// Input `follows`: the reactive power of the units and pumps of the site whose power factor the unit knows, var.
+pub const SITE_REACTIVE: &str = "site.reactive";
 /// Input `follows`: the start of the run, s since 1970 (UTC); it stays.
 pub const START_UNIX: &str = "run.start_unix_s";
 
@@ -104,6 +108,11 @@ pub trait ThermalUnit {
     /// Whether the unit takes heat out of what passes a port at positive flow: behind a station that is water from the
     /// hot line to the cold one, against the direction of feed-in.
     fn takes_heat(&self, _port: usize) -> bool {
+        false
+    }
+
+    /// Whether it is what heat and cold are for: a load, rooms, hot water.
+    fn serves(&self) -> bool {
         false
     }
 

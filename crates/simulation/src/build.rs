@@ -283,6 +283,7 @@ impl Builder<'_> {
         plan.follows.extend(self.weather_ground(&plan, &writers));
         plan.follows.extend(self.follows(&plan.units, &plan.signals, &writers));
         site_inputs::find(&mut plan, &writers);
+        self.check_power_factors(&plan);
         self.targets(&mut plan);
         plan.swing_watches = watches(&plan);
         plan.initial.unsettled = vec![0; plan.circuits.len() + plan.couplings.len()];

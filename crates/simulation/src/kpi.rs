@@ -7,11 +7,14 @@
 //! `FLOWING_KG_S` pass, by time `sum T dt/sum dt`, with `T = T_in + Q/(|m| cp)`;
 //! specific pumping energy `E_pumps/Q_taken`; losses over `Q_taken`; seasonal COP `(Q_heat + Q_cold)/E`;
 //! demand overlap coefficient `2 sum min(Q_h, Q_c) dt/sum (Q_h + Q_c) dt` of the heat `Q_h` that stations take in a
-//! step and the heat `Q_c` that they give (F-062), without those that balance.
+//! step and the heat `Q_c` that they give (F-062), without those that balance;
+//! exergy lost by mixing `sum T_0 S dt`, `S = cp sum m (ln T_mixed - ln T)` over the streams that meet in a node, `T_0`
+//! the temperature of the ground; efficiency of a site `(Q_demand + Q_given)/(E_fuel + E_generators + Q_taken)`:
+//! `E_demand/E_fuel` without a grid, `E_demand/(E_ext + E_fuel)` of who extracts.
 //!
 //! **Assumptions** a station balances when the unit behind it takes what comes (does not set its flow). The water that
 //! leaves an exchanger passes its volume: its temperature here is that before it, which is the same on average over
-//! a run but for what the volume holds. Heat of water at a station is told from its flow, in either direction.
+//! a run but for what the volume holds. What storages hold is not in the efficiency of a site. Heat of water at a station is told from its flow, in either direction.
 //!
 //! **Numerics** sums of step means are those of the balances (`balance.rs`); pressures and temperatures of nodes
 //! are those at the end of each step. Nothing feeds back into a step, nothing is allocated in it.
@@ -91,7 +94,7 @@ pub(crate) struct StationSums {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct UnitSums {
     electric_j: f64,
-    /// Heat that its water took up, where it has one port.
+    /// Heat that its water took up, where it has one port or serves people.
     given_j: f64,
     taken_j: f64,
     unmet_j: f64,
@@ -117,6 +120,8 @@ pub(crate) struct Sums {
     demand_heat_j: f64,
     demand_cold_j: f64,
     coincident_j: f64,
+    /// Exergy lost by mixing, J.
+    mixing_j: f64,
 }
 
 impl Sums {
@@ -152,6 +157,8 @@ pub(crate) struct Places {
     between: Vec<Option<(usize, usize)>>,
     /// Whether the unit behind each station takes what comes.
     balances: Vec<bool>,
+    /// Whether the heat through the ports of each unit is summed up.
+    booked: Vec<bool>,
     /// The output of each unit that says what it could not meet.
     unmet: Vec<Option<usize>>,
 }
@@ -184,6 +191,7 @@ impl Places {
             let end = |from| outer(&plan.network, &degree, parts, station.edge.index(), from);
             Some((end(edge.to.index())?, end(edge.from.index())?))
         });
+        let booked = plan.units.iter().map(|unit| unit.slots.len() == 1 || unit.equipment.serves());
         let unmet = plan.units.iter().map(|unit| {
             let outputs = unit.equipment.outputs();
             let place = outputs.iter().position(|output| output.name == "unmet_w")?;
@@ -192,6 +200,7 @@ impl Places {
         Self {
             between: between.collect(),
             balances: plan.stations.iter().map(balances).collect(),
+            booked: booked.collect(),
             unmet: unmet.collect(),
         }
     }

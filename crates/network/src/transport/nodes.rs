@@ -130,6 +130,31 @@ impl Transport {
         kept * old_k + (1.0 - kept) * mixed_k
     }
 
+    /// Entropy that mixing in the nodes produced in the last step, W/K: `cp sum m (ln T_mixed - ln T)` over what arrives,
+    /// never negative. What a volume held does not count.
+    pub fn mixing_w_k(&self, network: &Network, state: &NetworkState) -> f64 {
+        let mut sum_kg_s = 0.0;
+        for node in 0..network.nodes.len() {
+            let incident = &self.incident[self.first[node] as usize..self.first[node + 1] as usize];
+            let from_edges = incident.iter().filter_map(|&i| {
+                let (i, m) = (i as usize, state.m_flow_kg_s[i as usize]);
+                let arrives = m != 0.0 && network.edges[i].downstream(m).index() == node;
+                arrives.then(|| (m.abs(), self.outlet_k(network, state, i)))
+            });
+            let given = (state.exchange_kg_s[node], state.given_t_k[node]);
+            let is_given = given.0 > 0.0 && network.nodes[node].kind != NodeKind::PressureReference;
+            let streams = || from_edges.clone().chain(is_given.then_some(given));
+            if streams().nth(1).is_none() {
+                continue;
+            }
+            let (water, heat) =
+                streams().fold((0.0, 0.0), |sum, (m, t_k)| (sum.0 + m, sum.1 + m * t_k));
+            let mixed_k = heat / water;
+            sum_kg_s += streams().map(|(m, t_k)| m * (mixed_k / t_k).ln()).sum::<f64>();
+        }
+        network.medium.heat_capacity_j_kg_k * sum_kg_s
+    }
+
     /// Share of the old (or, in the steady state, the ambient) temperature in a node's mean outflow.
     pub(super) fn kept_share(&self, network: &Network, node: usize, dt_s: Option<f64>) -> f64 {
         let inflow = self.inflow_kg_s[node];

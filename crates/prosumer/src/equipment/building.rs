@@ -175,12 +175,12 @@ const POSITIVE: (f64, f64) = (0.0, f64::INFINITY);
 const ANY: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 impl ThermalUnit for Building {
+    fn serves(&self) -> bool {
+        true
+    }
+
     fn ports(&self) -> Vec<UnitPort> {
-        let port = |name: &'static str| UnitPort {
-            name: SmolStr::new_static(name),
-            sets_flow: true,
-            leads: false,
-        };
+        let port = |name| UnitPort { name: SmolStr::new_static(name), ..UnitPort::ONLY };
         let heating = self.params.heating.then(|| port("heating"));
         let cooling = self.params.cooling.then(|| port("cooling"));
         heating.into_iter().chain(cooling).collect()

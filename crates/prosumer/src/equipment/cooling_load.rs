@@ -137,6 +137,10 @@ impl CoolingLoadParams {
 }
 
 impl ThermalUnit for CoolingLoad {
+    fn serves(&self) -> bool {
+        true
+    }
+
     fn inputs(&self) -> Vec<UnitInput> {
         vec![UnitInput {
             name: "load_w",

@@ -202,6 +202,10 @@ impl DomesticHotWater {
 }
 
 impl ThermalUnit for DomesticHotWater {
+    fn serves(&self) -> bool {
+        true
+    }
+
     fn ports(&self) -> Vec<UnitPort> {
         vec![UnitPort { name: "water".into(), sets_flow: true, leads: false }]
     }

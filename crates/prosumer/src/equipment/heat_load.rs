@@ -152,6 +152,10 @@ impl HeatLoad {
 }
 
 impl ThermalUnit for HeatLoad {
+    fn serves(&self) -> bool {
+        true
+    }
+
     fn inputs(&self) -> Vec<UnitInput> {
         vec![UnitInput {
             name: "load_w",

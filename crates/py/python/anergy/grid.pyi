@@ -4708,6 +4708,23 @@ class _Unit:
         asymmetry_max_w: float | None = None,
         asymmetry_max_kw: float | None = None,
         asymmetry_max_mw: float | None = None,
+        import_price_eur_j: float | None = None,
+        import_price_eur_kwh: float | None = None,
+        import_price_ct_kwh: float | None = None,
+        import_price_eur_mwh: float | None = None,
+        export_price_eur_j: float | None = None,
+        export_price_eur_kwh: float | None = None,
+        export_price_ct_kwh: float | None = None,
+        export_price_eur_mwh: float | None = None,
+        chp_bonus_eur_j: float | None = None,
+        chp_bonus_eur_kwh: float | None = None,
+        chp_bonus_ct_kwh: float | None = None,
+        chp_bonus_eur_mwh: float | None = None,
+        power_factor: Mapping[str, float] | None = None,
+        fuel_price_eur_j: float | None = None,
+        fuel_price_eur_kwh: float | None = None,
+        fuel_price_ct_kwh: float | None = None,
+        fuel_price_eur_mwh: float | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "grid_connection".
 
@@ -4728,6 +4745,21 @@ class _Unit:
         asymmetry_max_w
             Largest difference of two phases that is no event, W. Default: 4600.0. Also asymmetry_max_kw,
             asymmetry_max_mw.
+        import_price_eur_j
+            Price of what is drawn while nothing drives it, EUR/J. Default: 0.0. Also import_price_eur_kwh,
+            import_price_ct_kwh, import_price_eur_mwh.
+        export_price_eur_j
+            Price of what is fed in while nothing drives it, EUR/J. Default: 0.0. Also export_price_eur_kwh,
+            export_price_ct_kwh, export_price_eur_mwh.
+        chp_bonus_eur_j
+            What is paid besides for what is fed in of electricity from fuel, EUR/J. Default: 0.0. Also
+            chp_bonus_eur_kwh, chp_bonus_ct_kwh, chp_bonus_eur_mwh.
+        power_factor
+            Power factor `cos phi` of units of the site by their names, and of its pumps as `pumps`; negative
+            where they lead (capacitive). Others have 1.
+        fuel_price_eur_j
+            Price of the fuel of the site while nothing drives it, EUR/J; by the heating value of the units'
+            efficiencies. Default: 0.0. Also fuel_price_eur_kwh, fuel_price_ct_kwh, fuel_price_eur_mwh.
         """
     def ideal_house(
         self,

@@ -1,14 +1,26 @@
 //! Inputs of units that follow the other units of their site, and outputs that are watched.
 
+use super::Builder;
 use super::signals::Writer;
+use crate::diagnostic::did_you_mean;
 use crate::plan::{OfSite, Plan, SiteInput, UnitFlag};
+use crate::wording::refused;
 use anergy_core::ids::SignalId;
-use anergy_prosumer::thermal_unit::{OF_SITE, SITE_ELECTRICITY, SITE_GRID};
+use anergy_prosumer::equipment::Equipment;
+use anergy_prosumer::equipment::grid_connection::PUMPS;
+use anergy_prosumer::thermal_unit::{
+    OF_SITE, SITE_COGENERATED, SITE_ELECTRICITY, SITE_GRID, SITE_REACTIVE,
+};
 use std::collections::HashMap;
 
 /// The site in front of a name; empty where there is none.
 fn site(name: &str) -> &str {
     name.split_once('.').map_or("", |(site, _)| site)
+}
+
+/// The name of a unit within its site.
+fn name_at_site(name: &str) -> &str {
+    name.split_once('.').map_or(name, |(_, name)| name)
 }
 
 /// Finds both, and the turns in which units advance: those that sum up others after them, batteries behind those,
@@ -25,6 +37,13 @@ pub(super) fn find(plan: &mut Plan, writers: &HashMap<SignalId, Writer>) {
             let (of, turn) = match follows {
                 SITE_ELECTRICITY => (electricity(plan, unit), 2),
                 SITE_GRID => (electricity(plan, unit), 3),
+                SITE_REACTIVE => (reactive(plan, unit), 3),
+                SITE_COGENERATED => {
+                    let burns = |other: &usize| output(plan, *other, "fuel_w").is_some();
+                    let places = others(plan, unit).filter(burns);
+                    let places = places.filter_map(|other| output(plan, other, "generated_w"));
+                    (OfSite::Outputs(places.collect()), 1)
+                }
                 _ => match follows.strip_prefix(OF_SITE) {
                     // Of several households the share of all people, but the heat of all their machines.
                     Some(output) if input.max == 1.0 => {
@@ -73,12 +92,51 @@ fn electricity(plan: &Plan, unit: usize) -> OfSite {
     }
 }
 
-fn outputs(plan: &Plan, unit: usize, name: &str) -> Vec<usize> {
-    let places = others(plan, unit).filter_map(|other| {
-        let planned = &plan.units[other];
-        let outputs = planned.equipment.outputs();
-        let place = outputs.iter().position(|output| output.name == name)?;
-        Some(planned.outputs.start + place)
+fn reactive(plan: &Plan, unit: usize) -> OfSite {
+    let Equipment::GridConnection(connection) = &plan.units[unit].equipment else {
+        return OfSite::Outputs(Vec::new());
+    };
+    let own = site(&plan.units[unit].name);
+    let shares = others(plan, unit).filter_map(|other| {
+        let share = connection.reactive_share(name_at_site(&plan.units[other].name))?;
+        Some((other, share))
     });
-    places.collect()
+    let at_site = plan.pumps.iter().filter(|pump| site(&plan.edge_names[**pump]) == own);
+    let pumps = at_site.filter_map(|pump| Some((*pump, connection.reactive_share(PUMPS)?)));
+    OfSite::Reactive { units: shares.collect(), pumps: pumps.collect() }
+}
+
+impl Builder<'_> {
+    /// A power factor of a unit that is not there would be without effect.
+    pub(super) fn check_power_factors(&mut self, plan: &Plan) {
+        for (unit, spec) in self.model.units.iter().enumerate() {
+            let Equipment::GridConnection(connection) = &plan.units[unit].equipment else {
+                continue;
+            };
+            let known: Vec<&str> =
+                others(plan, unit).map(|other| name_at_site(&plan.units[other].name)).collect();
+            for name in connection.with_power_factor() {
+                if name != PUMPS && !known.contains(&name) {
+                    let what = format!("unit \"{}\"", plan.units[unit].name);
+                    let message = format!("power_factor: its site has no unit \"{name}\"");
+                    let problem = refused(&what, &spec.place, Some("power_factor"), &message);
+                    let names = known.iter().copied().chain([PUMPS]);
+                    let hint = did_you_mean(name, names)
+                        .unwrap_or_else(|| format!("units of its site: {}", known.join(", ")));
+                    self.problems.push(problem.with_hint(hint));
+                }
+            }
+        }
+    }
+}
+
+/// The place of an output of a unit among those of all units.
+fn output(plan: &Plan, unit: usize, name: &str) -> Option<usize> {
+    let planned = &plan.units[unit];
+    let place = planned.equipment.outputs().iter().position(|output| output.name == name)?;
+    Some(planned.outputs.start + place)
+}
+
+fn outputs(plan: &Plan, unit: usize, name: &str) -> Vec<usize> {
+    others(plan, unit).filter_map(|other| output(plan, other, name)).collect()
 }

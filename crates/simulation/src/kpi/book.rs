@@ -42,12 +42,14 @@ pub(crate) fn book(plan: &Plan, state: &mut State, transport: &Transport, dt_s: 
     sums.demand_cold_j += cold_w * dt_s;
     sums.coincident_j += f64::min(heat_w, cold_w) * dt_s;
     book_nodes(network, sums);
+    let ground_k = state.signals[plan.ground.index()];
+    sums.mixing_j += ground_k * transport.mixing_w_k(&plan.network, network) * dt_s;
     let cp = plan.network.medium.heat_capacity_j_kg_k;
     for (i, unit) in plan.units.iter().enumerate() {
         let booked = &mut sums.units[i];
         booked.electric_j += state.unit_exchange[i].electric_w * dt_s;
-        if unit.slots.len() == 1 {
-            let port = &state.unit_ports[unit.slots.start];
+        let ports = if places.booked[i] { unit.slots.clone() } else { 0..0 };
+        for port in &state.unit_ports[ports] {
             let q_w = port.m_flow_kg_s.abs() * cp * (port.t_out_k - port.t_in_k);
             booked.given_j += q_w.max(0.0) * dt_s;
             booked.taken_j += (-q_w).max(0.0) * dt_s;

@@ -66,6 +66,12 @@ struct Site {
     starts: Option<f64>,
     discomfort_heating_k_s: Option<f64>,
     discomfort_cooling_k_s: Option<f64>,
+    cost_eur: Option<f64>,
+    /// Heat and cold that people got.
+    demand_j: Option<f64>,
+    fuel_j: f64,
+    /// Electricity of what makes heat or cold without fuel.
+    generators_j: f64,
 }
 
 impl Site {
@@ -83,12 +89,22 @@ impl Site {
             ("starts", self.starts, 1.0),
             ("discomfort_heating_k_h", self.discomfort_heating_k_s, S_PER_H),
             ("discomfort_cooling_k_h", self.discomfort_cooling_k_s, S_PER_H),
+            ("cost_eur", self.cost_eur, 1.0),
+            ("demand_kwh", self.demand_j, J_PER_KWH),
         ];
         for (name, value, per) in optional {
             add(&mut to, name, value.map_or(f64::NAN, |value| value / per));
         }
         if let Some([heat_j, cold_j, electric_j]) = self.generated_j {
             add(&mut to, "seasonal_cop", (heat_j + cold_j) / electric_j);
+        }
+        let put_in_j = self.fuel_j + self.generators_j;
+        if put_in_j > 0.0 {
+            add(&mut to, "fuel_and_generators_kwh", put_in_j / J_PER_KWH);
+        }
+        let supplied_j = put_in_j + self.taken_j;
+        if let Some(demand_j) = self.demand_j.filter(|_| supplied_j > 0.0) {
+            add(&mut to, "efficiency", (demand_j + self.given_j) / supplied_j);
         }
         to
     }
@@ -170,14 +186,11 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
     let mut all = Numbers::new();
     for (i, unit) in plan.units.iter().enumerate() {
         let (sums, mut to) = (&state.kpis.units[i], Numbers::new());
-        let outputs = unit.equipment.outputs();
-        let output = |name: &str| {
-            let place = outputs.iter().position(|output| output.name == name)?;
-            Some(state.unit_outputs[unit.outputs.start + place])
-        };
+        let output = |name| output(plan, state, i, name);
         let (heat_j, cold_j) = (output("heat_j"), output("cold_j"));
         let (electric_j, fuel_j) = (output("electric_j"), output("fuel_j"));
         let starts = output("starts");
+        let cost_eur = cost_eur(plan, state, i);
         let discomfort = (output("dc_heat_k_s"), output("dc_cool_k_s"));
         let shown = [
             ("starts", starts, 1.0),
@@ -197,12 +210,17 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
             ("full_cycles", output("full_cycles"), 1.0),
             ("water_drawn_m3", output("drawn_m3"), 1.0),
             ("discomfort_water_k_l", output("dc_water_k_m3"), 1e-3),
+            ("electricity_cost_eur", output("electricity_cost_eur"), 1.0),
+            ("fuel_cost_eur", output("fuel_cost_eur"), 1.0),
+            ("revenue_eur", output("revenue_eur"), 1.0),
+            ("cost_eur", cost_eur, 1.0),
             ("unmet_kwh", plan.kpi_places.unmet[i].map(|_| sums.unmet_j), J_PER_KWH),
         ];
         for (name, value, per) in shown {
             add(&mut to, name, value.map_or(f64::NAN, |value| value / per));
         }
-        if unit.slots.len() == 1 && heat_j.is_none() && cold_j.is_none() {
+        let serves = unit.equipment.serves();
+        if (serves || unit.slots.len() == 1) && heat_j.is_none() && cold_j.is_none() {
             add(&mut to, "heat_to_water_kwh", sums.given_j / J_PER_KWH);
             add(&mut to, "heat_from_water_kwh", sums.taken_j / J_PER_KWH);
         }
@@ -225,6 +243,12 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
             more(&mut site.starts, starts);
             more(&mut site.discomfort_heating_k_s, discomfort.0);
             more(&mut site.discomfort_cooling_k_s, discomfort.1);
+            more(&mut site.cost_eur, cost_eur);
+            more(&mut site.demand_j, serves.then_some(sums.given_j + sums.taken_j));
+            site.fuel_j += fuel_j.unwrap_or(0.0);
+            if fuel_j.is_none() && !serves && !unit.slots.is_empty() {
+                site.generators_j += electric_j.unwrap_or(sums.electric_j);
+            }
             if let Some(electric_j) = electric_j.filter(|_| fuel_j.is_none()) {
                 let parts = [heat_j.unwrap_or(0.0), cold_j.unwrap_or(0.0), electric_j];
                 let sums = site.generated_j.get_or_insert_default();
@@ -234,6 +258,19 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
         all.insert(unit.name.to_string(), Value::Object(to));
     }
     all
+}
+
+/// An output of a unit, if it has it.
+fn output(plan: &Plan, state: &State, unit: usize, name: &str) -> Option<f64> {
+    let unit = &plan.units[unit];
+    let place = unit.equipment.outputs().iter().position(|output| output.name == name)?;
+    Some(state.unit_outputs[unit.outputs.start + place])
+}
+
+/// What a connection to the electric grid paid for electricity and fuel, less what it got.
+fn cost_eur(plan: &Plan, state: &State, unit: usize) -> Option<f64> {
+    let eur = |name| output(plan, state, unit, name);
+    Some(eur("electricity_cost_eur")? + eur("fuel_cost_eur")? - eur("revenue_eur")?)
 }
 
 fn network(plan: &Plan, state: &State) -> Numbers {
@@ -249,6 +286,7 @@ fn network(plan: &Plan, state: &State) -> Numbers {
         add(&mut to, "pump_kwh_per_mwh_taken", 1000.0 * state.electric_j / taken_j);
         add_percent(&mut to, "heat_lost_of_taken_percent", state.loss_j, taken_j);
     }
+    add(&mut to, "exergy_lost_by_mixing_kwh", sums.mixing_j / J_PER_KWH);
     if plan.kpi_places.balances.contains(&true) {
         let balances = || sums.stations.iter().zip(&plan.kpi_places.balances).filter(|(_, b)| **b);
         let given_j: f64 = balances().map(|(station, _)| station.given_j).sum();
@@ -274,6 +312,9 @@ fn network(plan: &Plan, state: &State) -> Numbers {
         add(&mut to, &format!("{which}_node_degc"), degc(extreme.t_k));
         to.insert(format!("{which}_node"), json!(plan.node_names[extreme.node]));
     }
+    let costs = (0..plan.units.len()).filter_map(|unit| cost_eur(plan, state, unit));
+    let costs_eur = costs.reduce(|sum, eur| sum + eur);
+    add(&mut to, "cost_eur", costs_eur.unwrap_or(f64::NAN));
     let blocked_s: f64 = state.stations.iter().map(|station| station.blocked_s).sum();
     add(&mut to, "blocked_h", blocked_s / S_PER_H);
     let hunting_s: f64 = state.swings.iter().map(|swing| swing.hunting_s).sum();

@@ -76,7 +76,7 @@ pub(crate) struct UnitFlag {
 }
 
 /// What an input of a unit sums up of the other units of its site.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum OfSite {
     /// One of their outputs, at these places.
     Outputs(Vec<usize>),
@@ -84,6 +84,8 @@ pub(crate) enum OfSite {
     Mean(Vec<usize>),
     /// The electricity of these units and pumps.
     Electricity { units: Vec<usize>, pumps: Vec<usize> },
+    /// The electricity of units and pumps, each times what it draws of reactive over real power.
+    Reactive { units: Vec<(usize, f64)>, pumps: Vec<(usize, f64)> },
 }
 
 /// An input of a unit that follows what the other units of its site did in the same step.

@@ -66,6 +66,13 @@ impl Simulation {
                     let pump_w = |pump: &usize| plan.electric_w(&state.network, *pump);
                     units_w + pumps.iter().map(pump_w).sum::<f64>()
                 }
+                OfSite::Reactive { units, pumps } => {
+                    let unit_w = |unit: usize| state.unit_exchange[unit].electric_w;
+                    let units = units.iter().map(|(unit, share)| share * unit_w(*unit));
+                    let pump_w = |pump: usize| plan.electric_w(&state.network, pump);
+                    let pumps = pumps.iter().map(|(pump, share)| share * pump_w(*pump));
+                    units.chain(pumps).sum()
+                }
             };
             let spec = plan.signals.spec(input.signal);
             state.signals[input.signal.index()] = value.clamp(spec.min, spec.max);
