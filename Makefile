@@ -46,6 +46,7 @@ test-python: python ## Python tests, stub check and examples
 	$(BIN)/python examples/grids/run.py
 	$(BIN)/python examples/feed-in-types/run.py
 	$(BIN)/python examples/5gdhc-street/run.py
+	$(BIN)/python examples/two-balancing-units/location.py 6h
 	$(BIN)/python examples/soil-study/run.py
 	$(BIN)/python examples/rse-facility/run.py
 	$(BIN)/python examples/ensembles/sensitivity.py
