@@ -83,6 +83,47 @@ fn a_growing_mode_grows_in_simulation_as_predicted() {
     assert!((growth - mode.growth_per_s).abs() < 1e-3, "{growth} {}", mode.growth_per_s);
 }
 
+#[test]
+fn cascades_hunt_in_simulation_as_predicted() {
+    // Each pump holds its flow by a pressure difference over itself, and that by its speed, updated every 0.1 s.
+    let mut changes = vec![("[600, 0.055]", "[10, 0.0500001]".to_owned())];
+    for (old, i) in [("flow1.value\"\nacts_on", 1), ("flow2.value\"\nacts_on", 2)] {
+        let inner = format!("flow{i}.value\"\ninner_measures = \"dp{i}.value\"\nacts_on");
+        changes.push((old, inner));
+    }
+    let sensor = |i: usize| {
+        format!(
+            "[[sensor]]\nid = \"dp{i}\"\nmeasures = \"plant.feeder{i}.feed_in_pump.dp_pa\"\n\
+             time_constant_s = 0.5\n\n[[controller]]\nid = \"pi{i}\"\n"
+        )
+    };
+    changes.push(("[[controller]]\nid = \"pi1\"\n", sensor(1)));
+    changes.push(("[[controller]]\nid = \"pi2\"\n", sensor(2)));
+    changes.push(("kind = \"pi\"", "kind = \"cascade\"\ninterval_s = 0.1".to_owned()));
+    changes.push(("gain = 2.4", "gain = OUTER".to_owned()));
+    let inner = "integral_time_s = 40\ninner_set_min = -40000\ninner_set_max = 0\ninner_gain = -4e-6\ninner_integral_time_s = 4";
+    changes.push(("integral_time_s = 8", inner.to_owned()));
+    let cascades = |gain: &'static str| {
+        let changes = changes.iter().map(|(from, to)| (*from, to.replace("OUTER", gain)));
+        let changes: Vec<(&str, String)> = changes.collect();
+        let changes: Vec<(&str, &str)> = changes.iter().map(|(a, b)| (*a, b.as_str())).collect();
+        model(2, &changes)
+    };
+    assert!(analysis(&cascades("-2e5")).controllers.iter().all(|c| c.stable && c.open.is_none()));
+    let growing = cascades("-4e5");
+    let found = analysis(&growing);
+    assert!(found.controllers.iter().all(|c| !c.stable && c.group.len() == 2));
+    let mode = &found.modes[0];
+    let phases: Vec<f64> = mode.phase_deg.values().map(|phase| phase.abs()).collect();
+    assert!(phases.iter().any(|phase| (phase - 180.0).abs() < 0.1), "one against the other");
+    // Before it is so large that pumps run into limits.
+    let (flows, _) = run_flows(&growing, 40.0, 150.0);
+    let difference: Vec<f64> = (0..flows[0].len()).map(|i| flows[0][i] - flows[1][i]).collect();
+    let (period_s, growth) = wave(&difference, 0.1);
+    assert!((period_s / mode.period_s - 1.0).abs() < 5e-3, "{period_s} {}", mode.period_s);
+    assert!((growth - mode.growth_per_s).abs() < 2e-3, "{growth} {}", mode.growth_per_s);
+}
+
 /// Period, s, and growth, 1/s, of a wave around zero by its zero crossings and maxima.
 fn wave(values: &[f64], step_s: f64) -> (f64, f64) {
     let mut crossings = Vec::new();

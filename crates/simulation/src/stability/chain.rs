@@ -6,6 +6,8 @@
 
 use nalgebra::{Complex, DMatrix};
 
+type C64 = Complex<f64>;
+
 /// Lags in a row: those of an actuator, that of a sensor.
 const MOST: usize = 3;
 
@@ -14,6 +16,8 @@ const MOST: usize = 3;
 pub(super) struct Chain {
     /// Time constants, s; without those that are zero.
     lags_s: Vec<f64>,
+    /// How many of them are those of the actuator.
+    ahead: usize,
     dead_s: f64,
 }
 
@@ -21,6 +25,8 @@ pub(super) struct Chain {
 #[derive(Debug, Clone)]
 pub(super) struct SampledChain {
     n: usize,
+    /// Lags of the actuator; one more is that of the sensor.
+    ahead: usize,
     /// Whole samples of the dead time.
     late: i32,
     phi: [[f64; MOST]; MOST],
@@ -32,7 +38,8 @@ pub(super) struct SampledChain {
 impl Chain {
     pub fn new(actuator_lag_s: f64, sensor_lag_s: f64, dead_s: f64) -> Self {
         let all = [actuator_lag_s, actuator_lag_s, sensor_lag_s];
-        Self { lags_s: all.into_iter().filter(|lag| *lag > 0.0).collect(), dead_s }
+        let ahead = if actuator_lag_s > 0.0 { 2 } else { 0 };
+        Self { lags_s: all.into_iter().filter(|lag| *lag > 0.0).collect(), ahead, dead_s }
     }
 
     /// The answer to a command at a complex frequency, 1/s.
@@ -58,7 +65,8 @@ impl Chain {
         let ((phi, gamma), (phi_rest, gamma_rest)) = (self.step(interval_s), self.step(rest_s));
         #[allow(clippy::cast_possible_truncation)]
         let late = whole as i32 + 1;
-        SampledChain { n: self.lags_s.len(), late, phi, gamma, phi_rest, gamma_rest }
+        let (n, ahead) = (self.lags_s.len(), self.ahead);
+        SampledChain { n, ahead, late, phi, gamma, phi_rest, gamma_rest }
     }
 
     /// State after a time over the state before it, and over a command held meanwhile.
@@ -82,21 +90,161 @@ impl Chain {
 
 impl SampledChain {
     /// The answer to a held command at a value of z.
-    pub fn at(&self, z: Complex<f64>) -> Complex<f64> {
-        let late = z.powi(-self.late);
+    #[cfg(test)]
+    pub fn at(&self, z: C64) -> C64 {
+        self.through(&self.ahead(z), self.behind(z), self.late(z))
+    }
+
+    /// The dead time, which all chains of its sensor have.
+    fn late(&self, z: C64) -> C64 {
+        z.powi(-self.late)
+    }
+
+    /// Lags of the actuator, which all chains behind it have: `(z - Phi) v = Gamma`, Phi lower triangular.
+    fn ahead(&self, z: C64) -> [C64; MOST] {
+        let mut v = [Complex::new(0.0, 0.0); MOST];
+        for i in 0..self.ahead {
+            let before: C64 = (0..i).map(|k| v[k] * self.phi[i][k]).sum();
+            v[i] = (before + self.gamma[i]) / (z - self.phi[i][i]);
+        }
+        v
+    }
+
+    /// The lag of the sensor alone, which all its chains have.
+    fn behind(&self, z: C64) -> C64 {
+        if self.n > self.ahead { (z - self.phi[self.n - 1][self.n - 1]).inv() } else { z }
+    }
+
+    /// The answer, from what it shares with other chains.
+    fn through(&self, ahead: &[C64; MOST], behind: C64, late: C64) -> C64 {
         if self.n == 0 {
             return late;
         }
-        // (z - Phi) v = Gamma, Phi lower triangular
-        let mut v = [Complex::new(0.0, 0.0); MOST];
-        for i in 0..self.n {
-            let before: Complex<f64> = (0..i).map(|k| v[k] * self.phi[i][k]).sum();
-            v[i] = (before + self.gamma[i]) / (z - self.phi[i][i]);
+        let (mut v, last) = (*ahead, self.n - 1);
+        if self.n > self.ahead {
+            let before: C64 = (0..last).map(|k| v[k] * self.phi[last][k]).sum();
+            v[last] = (before + self.gamma[last]) * behind;
         }
-        let last = self.n - 1;
-        let rest: Complex<f64> = (0..self.n).map(|k| v[k] * self.phi_rest[last][k]).sum();
+        let rest: C64 = (0..self.n).map(|k| v[k] * self.phi_rest[last][k]).sum();
         late * (rest + self.gamma_rest[last])
     }
+}
+
+/// The chains from all outputs to all measured values; what they share is worked out once.
+pub(super) struct Chains {
+    /// Actuators and sensors, each kind once.
+    actuator_lags_s: Vec<f64>,
+    sensors: Vec<Seen>,
+    actuator_of: Vec<usize>,
+    sensor_of: Vec<usize>,
+    /// Sensor by sensor; empty where the controllers are continuous.
+    sampled: Vec<SampledChain>,
+    interval_s: f64,
+}
+
+/// A sensor of a measured value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Seen {
+    pub lag_s: f64,
+    pub dead_s: f64,
+}
+
+impl Chains {
+    /// Chains of outputs with actuators of these lags and of values with these sensors; the interval is 0 where the
+    /// controllers are continuous.
+    pub fn new(actuator_lags_s: &[f64], seen: &[Seen], interval_s: f64) -> Self {
+        let (lags, actuator_of) = kinds(actuator_lags_s);
+        let (sensors, sensor_of) = kinds(seen);
+        let pairs = sensors.iter().flat_map(|seen| lags.iter().map(move |lag| (*lag, *seen)));
+        let chain = |(lag_s, seen): (f64, Seen)| {
+            Chain::new(lag_s, seen.lag_s, seen.dead_s).sampled(interval_s)
+        };
+        let sampled = if interval_s > 0.0 { pairs.map(chain).collect() } else { Vec::new() };
+        Self { actuator_lags_s: lags, sensors, actuator_of, sensor_of, sampled, interval_s }
+    }
+
+    /// Whether all chains are one.
+    pub fn alike(&self) -> bool {
+        self.actuator_lags_s.len() == 1 && self.sensors.len() == 1
+    }
+
+    /// z where the controllers are sampled, otherwise s itself.
+    pub fn variable(&self, s: C64) -> C64 {
+        if self.interval_s > 0.0 { (s * self.interval_s).exp() } else { s }
+    }
+
+    /// The answers of all measured values (rows) to commands at a complex frequency.
+    pub fn at(&self, s: C64) -> DMatrix<C64> {
+        let kinds = self.kinds_at(s);
+        DMatrix::from_fn(self.sensor_of.len(), self.actuator_of.len(), |i, j| {
+            kinds[(self.sensor_of[i], self.actuator_of[j])]
+        })
+    }
+
+    /// The same of each kind of sensor and actuator.
+    pub fn kinds_at(&self, s: C64) -> DMatrix<C64> {
+        let (n, z) = (self.actuator_lags_s.len(), self.variable(s));
+        if self.sampled.is_empty() {
+            let ahead: Vec<C64> =
+                self.actuator_lags_s.iter().map(|lag| Chain::new(*lag, 0.0, 0.0).at(s)).collect();
+            let behind: Vec<C64> = self
+                .sensors
+                .iter()
+                .map(|seen| Chain::new(0.0, seen.lag_s, seen.dead_s).at(s))
+                .collect();
+            DMatrix::from_fn(behind.len(), n, |i, j| behind[i] * ahead[j])
+        } else {
+            let ahead: Vec<_> = self.sampled[..n].iter().map(|chain| chain.ahead(z)).collect();
+            let first = self.sampled.iter().step_by(n);
+            let behind: Vec<_> = first.map(|chain| (chain.behind(z), chain.late(z))).collect();
+            DMatrix::from_fn(behind.len(), n, |i, j| {
+                self.sampled[i * n + j].through(&ahead[j], behind[i].0, behind[i].1)
+            })
+        }
+    }
+
+    /// The answer of one value to one command that changes without a pause.
+    pub fn continuous(&self, i: usize, j: usize, s: C64) -> C64 {
+        self.chain(i, j).at(s)
+    }
+
+    /// All times between an output and a value added up, s.
+    pub fn total_s(&self, i: usize, j: usize) -> f64 {
+        self.chain(i, j).total_s()
+    }
+
+    fn chain(&self, i: usize, j: usize) -> Chain {
+        let seen = self.sensors[self.sensor_of[i]];
+        Chain::new(self.actuator_lags_s[self.actuator_of[j]], seen.lag_s, seen.dead_s)
+    }
+
+    /// The fastest and the slowest of all times added up, s.
+    pub fn times_s(&self) -> (f64, f64) {
+        let range = |all: &mut dyn Iterator<Item = f64>| {
+            all.fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t), max.max(t)))
+        };
+        let ahead = range(&mut self.actuator_lags_s.iter().map(|lag| 2.0 * lag));
+        let behind = range(&mut self.sensors.iter().map(|seen| seen.lag_s + seen.dead_s));
+        ((ahead.0 + behind.0).max(self.interval_s), (ahead.1 + behind.1).max(self.interval_s))
+    }
+
+    /// The longest dead time, s.
+    pub fn dead_s(&self) -> f64 {
+        self.sensors.iter().fold(self.interval_s, |longest, seen| longest.max(seen.dead_s))
+    }
+}
+
+/// What is different in a list, and which of it each entry is.
+fn kinds<T: Copy + PartialEq>(all: &[T]) -> (Vec<T>, Vec<usize>) {
+    let mut kinds: Vec<T> = Vec::new();
+    let of = all.iter().map(|one| {
+        kinds.iter().position(|kind| kind == one).unwrap_or_else(|| {
+            kinds.push(*one);
+            kinds.len() - 1
+        })
+    });
+    let of = of.collect();
+    (kinds, of)
 }
 
 #[cfg(test)]
@@ -122,5 +270,23 @@ mod tests {
         let rest = (-0.6_f64).exp();
         let by_hand = (rest * (1.0 - e) / (z - e) + (1.0 - rest)) / z;
         assert!((late - by_hand).norm() < 1e-12);
+        // What chains share does not change them.
+        let seen = [(0.0, 0.4), (0.7, 0.0), (0.7, 1.0), (0.7, 0.0)];
+        let seen = seen.map(|(lag_s, dead_s)| Seen { lag_s, dead_s });
+        let lags_s = [1.5, 0.0, 0.6];
+        let s = Complex::new(-0.02, 0.9);
+        for interval_s in [0.0, 0.5] {
+            let all = Chains::new(&lags_s, &seen, interval_s).at(s);
+            for (i, seen) in seen.iter().enumerate() {
+                for (j, lag_s) in lags_s.iter().enumerate() {
+                    let chain = Chain::new(*lag_s, seen.lag_s, seen.dead_s);
+                    let alone = match interval_s {
+                        0.0 => chain.at(s),
+                        h => chain.sampled(h).at((s * h).exp()),
+                    };
+                    assert!((all[(i, j)] - alone).norm() < 1e-13);
+                }
+            }
+        }
     }
 }

@@ -1,9 +1,14 @@
 //! How many modes grow: turns of the determinant of the closed loops along the imaginary axis.
 //!
-//! **Sources** `skogestad2005` (argument principle).
+//! **Method** the determinant is a product: of the eigenvalues of the loops where they are uniform, otherwise of the
+//! pivots of an elimination without exchanges, each the quotient of two leading minors. Factors are followed one by
+//! one, so that many that turn a little, or two that pass zero together, are not taken for a whole turn. Where all
+//! loops together answer less than they are given (a norm of `k L` below 1) no factor can turn round any more, and
+//! what is left to the end is what the pivots, all in the right half plane, stand away from the real axis. **Sources**
+//! `skogestad2005` (argument principle).
 
 use super::loops::Loops;
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 use std::f64::consts::PI;
 
 type C64 = Complex<f64>;
@@ -11,39 +16,123 @@ type C64 = Complex<f64>;
 /// A scale beyond all gains, and how far down frequencies are looked for at which integrators prevail.
 const HUGE: f64 = 1e9;
 const MOST_DECADES: usize = 30;
-/// Factors between two frequencies of a count, anywhere and near a crossing: two modes that pass together in one
-/// step would turn the determinant once around, and be missed.
-const LONGEST_STEP: f64 = 1.12;
-const HOT_STEP: f64 = 1.005;
+/// Factors between two frequencies of a count; by how much the longest dead time may turn in between, rad; and where
+/// the determinant is known as a whole only, so that two modes that pass together would be missed in a longer step.
+const LONGEST_STEP: f64 = 1.25;
+const LATE_RAD: f64 = 0.5;
+const WHOLE_STEP: f64 = 1.005;
+/// Largest turn of a factor between two frequencies, and where steps may grow, rad.
+const LARGE_TURN: f64 = 0.7;
+const SMALL_TURN: f64 = 0.3;
+/// A pivot below this share of its row says nothing.
+const LOST: f64 = 1e-9;
+/// A norm below this is below 1, and frequencies above at which it is looked at again.
+const QUIET: f64 = 0.9;
+const QUIET_AGAIN: i32 = 6;
 
 /// The loops with the eigenvalues of their gains, where they are uniform.
 pub(super) struct Case<'a> {
     pub loops: &'a Loops,
     pub lambdas: Option<Vec<C64>>,
-    /// Frequencies near which modes may cross, rad/s.
-    pub hot: Vec<f64>,
 }
 
-/// `det(1 + k L(i omega))`: logarithm of its size, and its direction.
-fn determinant(case: &Case, factor: f64, omega: f64) -> (f64, C64) {
-    let s = C64::new(0.0, omega);
-    // As a product, so that many large factors do not overflow.
-    let gather = |(size, direction): (f64, C64), value: C64| {
-        let norm = value.norm();
-        (size + norm.ln(), direction * value / norm)
-    };
-    let start = (0.0, C64::new(1.0, 0.0));
-    match &case.lambdas {
-        Some(lambdas) => {
+/// `det(1 + k L(i omega))` by its factors.
+struct Determinant {
+    /// Logarithm of its size.
+    size: f64,
+    /// Direction of each factor; the whole one where an elimination needs exchanges.
+    directions: Vec<C64>,
+    /// Smallest norm of `k L`.
+    norm: f64,
+}
+
+impl Determinant {
+    fn of(case: &Case, factor: f64, omega: f64) -> Self {
+        let s = C64::new(0.0, omega);
+        if let Some(lambdas) = &case.lambdas {
             let common = case.loops.common(s) * factor;
-            lambdas.iter().map(|lambda| lambda * common + 1.0).fold(start, gather)
+            let largest = lambdas.iter().fold(0.0_f64, |largest, x| largest.max(x.norm()));
+            let factors = lambdas.iter().map(|lambda| lambda * common + 1.0);
+            return Self::product(factors, largest * common.norm());
         }
-        None => {
-            let lu = case.loops.closed(s, factor).lu();
-            let sign: C64 = lu.p().determinant();
-            lu.u().diagonal().iter().copied().chain([sign]).fold(start, gather)
+        let matrix = case.loops.matrix(s) * C64::new(factor, 0.0);
+        let sum = |entries: &mut dyn Iterator<Item = &C64>| {
+            entries.map(|x| x.re.abs() + x.im.abs()).sum::<f64>()
+        };
+        let rows = matrix.row_iter().map(|row| sum(&mut row.iter())).fold(0.0, f64::max);
+        let columns = matrix.column_iter().map(|c| sum(&mut c.iter())).fold(0.0, f64::max);
+        let norm = rows.min(columns);
+        match pivots(&matrix) {
+            Some(pivots) => Self::product(pivots.into_iter(), norm),
+            None => {
+                let mut closed = matrix;
+                (0..closed.nrows()).for_each(|i| closed[(i, i)] += 1.0);
+                let lu = closed.lu();
+                let sign: C64 = lu.p().determinant();
+                let whole =
+                    Self::product(lu.u().diagonal().iter().copied().chain([sign]), f64::INFINITY);
+                Self { directions: vec![whole.directions.iter().product()], ..whole }
+            }
         }
     }
+
+    fn product(factors: impl Iterator<Item = C64>, norm: f64) -> Self {
+        // As logarithms, so that many large factors do not overflow.
+        let (mut size, mut directions) = (0.0, Vec::new());
+        for value in factors {
+            size += value.norm().ln();
+            directions.push(value / value.norm());
+        }
+        Self { size, directions, norm }
+    }
+
+    /// Turn from here to another frequency, rad: all together, and the largest.
+    fn turn(&self, next: &Self) -> (f64, f64) {
+        let of = |(before, now): (&C64, &C64)| (now / before).arg();
+        if self.directions.len() == next.directions.len() {
+            let turns = self.directions.iter().zip(&next.directions).map(of);
+            return turns.fold((0.0, 0.0_f64), |(all, most), t| (all + t, most.max(t.abs())));
+        }
+        let whole = |of: &Self| of.directions.iter().product::<C64>();
+        let turn = of((&whole(self), &whole(next)));
+        (turn, turn.abs())
+    }
+}
+
+/// Pivots of `1 + M` in the order of its rows; `None` where one is lost.
+fn pivots(matrix: &DMatrix<C64>) -> Option<Vec<C64>> {
+    let n = matrix.nrows();
+    // Row by row, real and imaginary parts apart: the inner loop is one of plain numbers.
+    let part = |of: fn(&C64) -> f64| -> Vec<f64> {
+        (0..n * n).map(|k| of(&matrix[(k / n, k % n)])).collect()
+    };
+    let (mut re, mut im) = (part(|x| x.re), part(|x| x.im));
+    (0..n).for_each(|i| re[i * n + i] += 1.0);
+    let largest = |i: usize| {
+        let row = re[i * n..(i + 1) * n].iter().chain(&im[i * n..(i + 1) * n]);
+        row.fold(0.0_f64, |largest, x| largest.max(x.abs()))
+    };
+    let scales: Vec<f64> = (0..n).map(largest).collect();
+    let mut pivots = Vec::with_capacity(n);
+    for k in 0..n {
+        let pivot = C64::new(re[k * n + k], im[k * n + k]);
+        if pivot.norm().partial_cmp(&(LOST * scales[k])) != Some(std::cmp::Ordering::Greater) {
+            return None;
+        }
+        pivots.push(pivot);
+        let (upper_re, lower_re) = re.split_at_mut((k + 1) * n);
+        let (upper_im, lower_im) = im.split_at_mut((k + 1) * n);
+        let (row_re, row_im) = (&upper_re[k * n + k + 1..], &upper_im[k * n + k + 1..]);
+        for (own_re, own_im) in lower_re.chunks_exact_mut(n).zip(lower_im.chunks_exact_mut(n)) {
+            let share = C64::new(own_re[k], own_im[k]) / pivot;
+            let own = own_re[k + 1..].iter_mut().zip(&mut own_im[k + 1..]);
+            for ((x, y), (a, b)) in own.zip(row_re.iter().zip(row_im)) {
+                *x -= share.re * a - share.im * b;
+                *y -= share.re * b + share.im * a;
+            }
+        }
+    }
+    Some(pivots)
 }
 
 /// Number of growing modes: turns of the determinant along the imaginary axis.
@@ -51,9 +140,9 @@ fn determinant(case: &Case, factor: f64, omega: f64) -> (f64, C64) {
 /// With p poles at zero (integrators) it is `p/2 - change of phase/pi`.
 pub(super) fn count_growing(case: &Case, factor: f64) -> i64 {
     let (_, slowest) = case.loops.times_s();
-    let mut low = 1e-4 / slowest;
+    let mut low = 1e-3 / slowest;
     let order = |factor: f64, omega: f64| {
-        let size = |omega| determinant(case, factor, omega).0;
+        let size = |omega| Determinant::of(case, factor, omega).size;
         (size(0.1 * omega) - size(omega)) / std::f64::consts::LN_10
     };
     // With a huge scale every loop with an integrator shows its pole.
@@ -65,27 +154,65 @@ pub(super) fn count_growing(case: &Case, factor: f64) -> i64 {
         low *= 0.1;
     }
     let high = case.loops.highest_rad_s();
-    let longest = |omega: f64| {
-        let near = case.hot.iter().any(|hot| (omega / hot - 1.0).abs() < 0.05);
-        if near { HOT_STEP } else { LONGEST_STEP }
+    let late_s = case.loops.dead_s();
+    let longest = |omega: f64, factors: usize| {
+        let all = if factors == 1 && case.loops.len() > 1 { WHOLE_STEP } else { LONGEST_STEP };
+        all.min(1.0 + LATE_RAD / (omega * late_s))
     };
     let mut phase = 0.0;
-    let mut at = (low, determinant(case, factor, low).1);
-    let mut step = LONGEST_STEP;
+    let mut at = (low, Determinant::of(case, factor, low));
+    let mut step = longest(low, at.1.directions.len());
     while at.0 < high {
+        if at.1.norm < QUIET && stays_quiet(case, factor, at.0, high) {
+            phase -= at.1.directions.iter().map(|direction| direction.arg()).sum::<f64>();
+            break;
+        }
         let next = (at.0 * step).min(high);
-        let value = determinant(case, factor, next).1;
-        let turn = (value / at.1).arg();
-        if turn.abs() > 0.7 && step > 1.0 + 1e-8 {
+        let value = Determinant::of(case, factor, next);
+        let (turn, most) = at.1.turn(&value);
+        if most > LARGE_TURN && step > 1.0 + 1e-8 {
             step = 1.0 + 0.3 * (step - 1.0);
             continue;
         }
         phase += turn;
+        step = if most < SMALL_TURN { 1.0 + 2.0 * (step - 1.0) } else { step }
+            .min(longest(next, value.directions.len()));
         at = (next, value);
-        step = if turn.abs() < 0.3 { 1.0 + 2.0 * (step - 1.0) } else { step }.min(longest(next));
     }
     let count = 0.5 * poles - phase / PI;
     #[allow(clippy::cast_possible_truncation)]
     let count = count.round() as i64;
     count
+}
+
+/// Whether the norm of `k L` is below 1 at all higher frequencies that are looked at.
+fn stays_quiet(case: &Case, factor: f64, omega: f64, high: f64) -> bool {
+    (1..=QUIET_AGAIN).all(|i| {
+        let share = f64::from(i) / f64::from(QUIET_AGAIN);
+        Determinant::of(case, factor, omega * (high / omega).powf(share)).norm < 1.0
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pivots_are_quotients_of_leading_minors() {
+        let entry = |i: usize, j: usize| {
+            C64::from_polar(0.3 + 0.1 * (i * 7 + j * 3 % 5) as f64, (i + 2 * j) as f64)
+        };
+        let matrix = DMatrix::from_fn(5, 5, entry);
+        let found = pivots(&matrix).unwrap();
+        let closed = matrix + DMatrix::identity(5, 5);
+        let minor = |k: usize| closed.view((0, 0), (k, k)).into_owned().determinant();
+        for k in 0..5 {
+            let expected = if k == 0 { minor(1) } else { minor(k + 1) / minor(k) };
+            assert!((found[k] - expected).norm() < 1e-12, "{k}");
+        }
+        // A leading minor of zero: only with exchanges.
+        let turned =
+            DMatrix::from_row_slice(2, 2, &[-1.0, 1.0, 1.0, 0.0].map(|x| C64::new(x, 0.0)));
+        assert!(pivots(&turned).is_none());
+    }
 }

@@ -1,8 +1,9 @@
 //! Which loops will hunt: modes of the closed loops of controllers, sensors, actuators and network, and the gains
 //! at which the first of them stops decaying.
 
+use super::chain::Seen;
 use super::law::Law;
-use super::loops::{Loops, Seen};
+use super::loops::Loops;
 use super::modes::Found;
 use super::periodic::{PeriodicLoops, Ticks};
 use super::response::{StepResponse, responses};

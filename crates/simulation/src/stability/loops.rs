@@ -6,7 +6,7 @@
 //! controllers of one interval h: the same in `z = exp(s h)`, exact at the samples. **Sources**
 //! `skogestad2005`.
 
-use super::chain::{Chain, SampledChain};
+use super::chain::{Chains, Seen};
 use super::law::Law;
 use super::response::StepResponse;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -16,10 +16,7 @@ pub(super) struct Loops {
     pub laws: Vec<Law>,
     /// Gains of measured values (rows) over outputs, in the order of the controllers.
     pub gains: DMatrix<f64>,
-    /// Chain of each measured value (rows) and output: index into `chains`.
-    chain_of: DMatrix<usize>,
-    chains: Vec<Chain>,
-    sampled: Vec<SampledChain>,
+    chains: Chains,
     /// Interval of all controllers, s; 0 where they are continuous.
     pub interval_s: f64,
     /// Responses in which temperatures take part, in place of gains: value, output.
@@ -28,13 +25,6 @@ pub(super) struct Loops {
     pub owner: Vec<usize>,
     /// All loops have the same law, chain and timing but for their gains: these.
     pub uniform: Option<Vec<f64>>,
-}
-
-/// A sensor of a measured value.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
-    pub lag_s: f64,
-    pub dead_s: f64,
 }
 
 impl Loops {
@@ -47,22 +37,9 @@ impl Loops {
         interval_s: f64,
         slow: Vec<(usize, usize, StepResponse)>,
     ) -> Self {
-        let mut chains: Vec<Chain> = Vec::new();
-        let chain_of = DMatrix::from_fn(seen.len(), actuator_lags_s.len(), |i, j| {
-            let chain = Chain::new(actuator_lags_s[j], seen[i].lag_s, seen[i].dead_s);
-            chains.iter().position(|known| *known == chain).unwrap_or_else(|| {
-                chains.push(chain);
-                chains.len() - 1
-            })
-        });
-        let sampled = if interval_s > 0.0 {
-            chains.iter().map(|chain| chain.sampled(interval_s)).collect()
-        } else {
-            Vec::new()
-        };
+        let chains = Chains::new(actuator_lags_s, seen, interval_s);
         let owner = laws.iter().enumerate().flat_map(|(i, law)| vec![i; law.c.nrows()]).collect();
-        let mut loops =
-            Self { laws, gains, chain_of, chains, sampled, interval_s, slow, owner, uniform: None };
+        let mut loops = Self { laws, gains, chains, interval_s, slow, owner, uniform: None };
         loops.uniform = loops.uniform_gains();
         loops
     }
@@ -75,7 +52,7 @@ impl Loops {
     /// The gain of each controller where they differ in nothing else.
     fn uniform_gains(&self) -> Option<Vec<f64>> {
         let single = |law: &Law| law.a.nrows() == 1 && law.c.nrows() == 1 && law.b.ncols() == 1;
-        if self.chains.len() != 1 || !self.slow.is_empty() || !self.laws.iter().all(single) {
+        if !self.chains.alike() || !self.slow.is_empty() || !self.laws.iter().all(single) {
             return None;
         }
         let parts = |law: &Law| (law.a[(0, 0)], law.c[(0, 0)] * law.b[(0, 0)], law.d[(0, 0)]);
@@ -94,54 +71,40 @@ impl Loops {
 
     /// The law and chain that all loops have where they are uniform, without gains.
     pub fn common(&self, s: Complex<f64>) -> Complex<f64> {
-        -self.laws[0].transfer(self.variable(s))[(0, 0)] * self.chain(0, s)
-    }
-
-    /// z where the controllers are sampled, otherwise s itself.
-    fn variable(&self, s: Complex<f64>) -> Complex<f64> {
-        if self.interval_s > 0.0 { (s * self.interval_s).exp() } else { s }
-    }
-
-    fn chain(&self, i: usize, s: Complex<f64>) -> Complex<f64> {
-        match self.sampled.get(i) {
-            Some(sampled) => sampled.at((s * self.interval_s).exp()),
-            None => self.chains[i].at(s),
-        }
+        -self.laws[0].transfer(self.chains.variable(s))[(0, 0)] * self.chains.kinds_at(s)[(0, 0)]
     }
 
     /// `L(s)`.
     pub fn matrix(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
-        let chains: Vec<Complex<f64>> = (0..self.chains.len()).map(|i| self.chain(i, s)).collect();
         let n = self.len();
-        let mut matrix = DMatrix::zeros(n, n);
-        let mut plant = DMatrix::from_fn(self.gains.nrows(), n, |i, j| {
-            chains[self.chain_of[(i, j)]] * self.gains[(i, j)]
-        });
+        let mut plant = self.chains.at(s);
+        plant.zip_apply(&self.gains, |chain, gain| *chain *= gain);
         for (i, j, response) in &self.slow {
             // Between two samples the command is held: late by half of the interval.
             let x = s * self.interval_s;
             let hold =
                 if x.norm() < 1e-8 { Complex::new(1.0, 0.0) } else { (1.0 - (-x).exp()) / x };
-            let chain = self.chains[self.chain_of[(*i, *j)]].at(s);
-            plant[(*i, *j)] = chain * hold * response.at(s);
+            plant[(*i, *j)] = self.chains.continuous(*i, *j, s) * hold * response.at(s);
         }
-        let variable = self.variable(s);
+        let variable = self.chains.variable(s);
         let (mut row, mut seen) = (0, 0);
+        // Output, measured value, and what the controller makes of it.
+        let mut entries = Vec::with_capacity(n);
         for law in &self.laws {
             let transfer = law.transfer(variable);
             for i in 0..transfer.nrows() {
                 for k in 0..transfer.ncols() {
-                    let entry = -transfer[(i, k)];
-                    if entry == Complex::new(0.0, 0.0) {
-                        continue;
-                    }
-                    for j in 0..n {
-                        matrix[(row + i, j)] += entry * plant[(seen + k, j)];
-                    }
+                    entries.push((row + i, seen + k, -transfer[(i, k)]));
                 }
             }
             row += transfer.nrows();
             seen += transfer.ncols();
+        }
+        let mut matrix = DMatrix::zeros(n, n);
+        for j in 0..n {
+            for (output, value, entry) in &entries {
+                matrix[(*output, j)] += entry * plant[(*value, j)];
+            }
         }
         matrix
     }
@@ -157,14 +120,19 @@ impl Loops {
 
     /// Times between which its frequencies lie, s: the sum of all lags of the slowest chain, the fastest.
     pub fn times_s(&self) -> (f64, f64) {
-        let chains = self.chains.iter().map(|chain| chain.total_s().max(self.interval_s));
         let slow = self.slow.iter().map(|(i, j, response)| {
-            response.time_s() + self.chains[self.chain_of[(*i, *j)]].total_s()
+            let t = response.time_s() + self.chains.total_s(*i, *j);
+            (t, t)
         });
-        let all = chains.chain(slow);
-        let (min, max) =
-            all.fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t), max.max(t)));
+        let all = std::iter::once(self.chains.times_s()).chain(slow);
+        let (min, max) = all
+            .fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t.0), max.max(t.1)));
         if max > 0.0 { (min.max(1e-3 * max), max) } else { (1.0, 1.0) }
+    }
+
+    /// Longest time that passes before anything is answered, s.
+    pub fn dead_s(&self) -> f64 {
+        self.chains.dead_s()
     }
 
     /// Largest frequency that means something, rad/s.

@@ -2,9 +2,9 @@
 //!
 //! **Method** where all loops are alike but for their gains, `L = K G l(s)`, each eigenvalue of `K G` gives a
 //! scalar equation `1 + k lambda l(s) = 0`, exactly. Otherwise these equations, with l weighted by the
-//! participation of the loops in the eigenvector, give the start for secant steps on
+//! participation of the loops in the eigenvector, and those of each loop alone give the starts for secant steps on
 //! `1/(c^H (1 + k L)^-1 b)`, which vanishes at the modes only. The number of growing modes is counted with the
-//! argument principle, so that none is missed; where the count differs, modes are looked for from many
+//! argument principle, so that none is missed; where the count differs, modes are looked for from more
 //! starts. **Validity** poles of the controllers at zero (integrators) or in the left half plane. **Sources**
 //! `skogestad2005` (generalised Nyquist criterion).
 
@@ -17,8 +17,11 @@ type C64 = Complex<f64>;
 
 /// Frequencies that are looked at for crossings, per factor of ten.
 const PER_DECADE: usize = 40;
-/// Modes that are refined where loops differ.
+/// The same where crossings are starts only.
+const PER_DECADE_OF_STARTS: usize = 16;
+/// Modes that are refined where loops differ, and all that grow; limits that are before one is chosen.
 const REFINED: usize = 8;
+const REFINED_LIMITS: usize = 3;
 /// Modes closer than this, relative, are one.
 const SAME: f64 = 1e-6;
 /// A mode that moves less than this between growing and decaying has no period.
@@ -65,6 +68,8 @@ struct Scalar<'a> {
     values: Vec<C64>,
     /// Whether crossings are wanted to the last digit.
     exact: bool,
+    /// Whether it is that of one loop with all others open.
+    alone: bool,
 }
 
 /// Analyses a group of loops.
@@ -74,28 +79,27 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         let scaled = DMatrix::from_fn(n, n, |i, j| k[i] * loops.gains[(i, j)]);
         scaled.complex_eigenvalues().iter().copied().collect()
     });
-    let mut case = Case { loops, lambdas, hot: Vec::new() };
-    let omegas = frequencies(loops);
-    let scalars = scalars(&case, &omegas);
+    let case = Case { loops, lambdas };
     let exact = case.lambdas.is_some();
+    let growing = count_growing(&case, 1.0);
+    let omegas = frequencies(loops, if exact { PER_DECADE } else { PER_DECADE_OF_STARTS });
+    let scalars = scalars(&case, &omegas);
     let mut starts: Vec<(Limit, &Scalar)> = Vec::new();
     for scalar in &scalars {
         starts.extend(crossing(scalar, &omegas).map(|limit| (limit, scalar)));
     }
-    starts.sort_by(|a, b| a.0.factor.total_cmp(&b.0.factor));
-    let hot: Vec<f64> = starts.iter().map(|(limit, _)| limit.omega_rad_s).collect();
-    if !exact {
-        starts.truncate(REFINED);
-    }
-    let mut limits = Vec::new();
+    starts.sort_by(|(a, of), (b, other)| {
+        of.alone.cmp(&other.alone).then(a.factor.total_cmp(&b.factor))
+    });
     let mut roots: Vec<Root> = Vec::new();
-    for (limit, scalar) in starts {
-        let start = follow(scalar, limit);
+    for (k, (limit, scalar)) in starts.iter().enumerate() {
+        if !exact && k >= REFINED && counted(&roots) >= growing {
+            break;
+        }
+        let start = follow(scalar, *limit);
         if exact {
-            limits.push(limit);
             start.into_iter().for_each(|s| keep(&mut roots, s, scalar.times));
         } else {
-            limits.extend(refine_limit(loops, limit));
             let refined = start.and_then(|start| {
                 let probe = probe(loops.len(), 0);
                 secant(|s| resolvent(loops, s, 1.0, &probe), start)
@@ -103,24 +107,26 @@ pub(super) fn analyse(loops: &Loops) -> Found {
             refined.into_iter().for_each(|s| keep(&mut roots, s, 1));
         }
     }
-    drop(scalars);
-    case.hot = hot;
-    case.hot.extend(limits.iter().map(|limit| limit.omega_rad_s));
-    case.hot.extend(roots.iter().map(|root| root.s.im));
-    let growing = count_growing(&case, 1.0);
     if counted(&roots) < growing {
-        for s in search(loops, &omegas) {
+        for s in search(loops, &frequencies(loops, PER_DECADE)) {
             keep(&mut roots, s, 1);
         }
     }
     roots.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
-    limits.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let limit = if exact { limits.first().copied() } else { checked(&case, &limits, &omegas) };
     // What grows with hardly any gain has the wrong sign.
     let limit = if count_growing(&case, NO_GAIN) > 0 {
         Some(Limit { factor: 0.0, omega_rad_s: 0.0 })
+    } else if exact {
+        starts.first().map(|(limit, _)| *limit)
     } else {
-        limit
+        // The lowest of both kinds first.
+        let of = |alone: bool| starts.iter().filter(move |(_, scalar)| scalar.alone == alone);
+        let part = |of: &mut dyn Iterator<Item = &(Limit, &Scalar)>| -> Vec<Limit> {
+            of.map(|(limit, _)| *limit).collect()
+        };
+        let near = part(&mut of(false).take(REFINED_LIMITS).chain(of(true).take(REFINED_LIMITS)));
+        let far = part(&mut of(false).take(REFINED).skip(REFINED_LIMITS));
+        first_limit(&case, &near, &far, &omegas)
     };
     Found { roots, limit, growing }
 }
@@ -161,6 +167,7 @@ fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
             times,
             values: common.iter().map(|value| lambda * value).collect(),
             exact: true,
+            alone: false,
         };
         return all.into_iter().map(scalar).collect();
     }
@@ -185,7 +192,13 @@ fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
         let values = on_grid.iter().map(through).collect();
         let (left, right) = (left.clone(), right.clone());
         let f = move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm;
-        scalars.push(Scalar { f: Box::new(f), times: 1, values, exact: false });
+        scalars.push(Scalar { f: Box::new(f), times: 1, values, exact: false, alone: false });
+    }
+    // And each loop by itself: where lags differ much, modes are mostly those of one loop.
+    for i in 0..n {
+        let values = on_grid.iter().map(|matrix| matrix[(i, i)]).collect();
+        let f = move |s: C64| loops.matrix(s)[(i, i)];
+        scalars.push(Scalar { f: Box::new(f), times: 1, values, exact: false, alone: true });
     }
     scalars
 }
@@ -211,12 +224,12 @@ fn probe(n: usize, seed: u32) -> DVector<C64> {
     DVector::from_fn(n, |i, _| C64::from_polar(1.0 + 0.3 * (angle(i) * 1.7).sin(), angle(i)))
 }
 
-fn frequencies(loops: &Loops) -> Vec<f64> {
+fn frequencies(loops: &Loops, per_decade: usize) -> Vec<f64> {
     let (_, slowest) = loops.times_s();
     let (low, high) = (1e-3 / slowest, loops.highest_rad_s());
     let decades = (high / low).log10().max(1.0);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let n = (decades * PER_DECADE as f64).ceil() as usize;
+    let n = (decades * per_decade as f64).ceil() as usize;
     (0..=n).map(|i| low * (high / low).powf(i as f64 / n as f64)).collect()
 }
 
@@ -317,16 +330,23 @@ fn refine_limit(loops: &Loops, start: Limit) -> Option<Limit> {
     None
 }
 
-/// The first limit below which nothing grows and above which something does; otherwise that found by counting.
-fn checked(case: &Case, limits: &[Limit], omegas: &[f64]) -> Option<Limit> {
+/// The first limit below which nothing grows (there a mode stands still, so that beyond it one grows); otherwise that
+/// found by counting.
+fn first_limit(case: &Case, near: &[Limit], far: &[Limit], omegas: &[f64]) -> Option<Limit> {
     const MARGIN: f64 = 1e-3;
     let loops = case.loops;
-    let confirmed = |limit: &&Limit| {
-        count_growing(case, limit.factor * (1.0 - MARGIN)) == 0
-            && count_growing(case, limit.factor * (1.0 + MARGIN)) > 0
-    };
-    if let Some(limit) = limits.iter().find(confirmed) {
+    let first = |limit: &Limit| count_growing(case, limit.factor * (1.0 - MARGIN)) == 0;
+    let mut limits: Vec<Limit> =
+        near.iter().filter_map(|start| refine_limit(loops, *start)).collect();
+    limits.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    // Starts that lead to one limit are asked once.
+    limits.dedup_by(|a, b| a.factor <= b.factor * (1.0 + MARGIN));
+    if let Some(limit) = limits.iter().find(|limit| first(limit)) {
         return Some(*limit);
+    }
+    let mut far = far.iter().filter_map(|start| refine_limit(loops, *start));
+    if let Some(limit) = far.find(first) {
+        return Some(limit);
     }
     let (mut low, mut high) = (1e-6, 1e6);
     if count_growing(case, high) == 0 {

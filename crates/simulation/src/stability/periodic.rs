@@ -6,8 +6,8 @@
 //! controllers count as sampled at the step of the run. **Validity** water only: no temperatures in the loops.
 //! **Sources** `astrom2011` (lifting of multirate systems).
 
+use super::chain::Seen;
 use super::law::Law;
-use super::loops::Seen;
 use super::modes::{Found, Limit, Root};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
