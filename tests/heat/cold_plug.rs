@@ -6,6 +6,8 @@ use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_simulation::stability::advise::{Advice, Outcome, advise};
+use anergy_simulation::stability::analyse;
 use anergy_tests::workspace;
 
 /// SF1 starts.
@@ -29,10 +31,13 @@ fn flushed(text: &str) -> String {
     text.replace("initial_degc = 15", "initial_degc = 60")
 }
 
+fn model(text: &str) -> Model {
+    Model::from_toml(text, &workspace().join("examples/cold-plug"))
+        .unwrap_or_else(|problems| panic!("{}", problems.render(text)))
+}
+
 fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, &workspace().join("examples/cold-plug"))
-        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(build(&model).unwrap()).unwrap()
+    Simulation::new(build(&model(text)).unwrap()).unwrap()
 }
 
 /// Temperatures of a node at the ends of the steps, degC, by time.
@@ -146,4 +151,54 @@ fn standstill_cools_the_pipe_into_a_plug() {
     }
     let after = trace.sf4_at(STANDSTILL_S + 2400.0);
     assert!((after - 56.8).abs() < 0.3, "{after}");
+}
+
+/// What is advised, and what it is of the plain flush and of that with more flow of SF2.
+fn advice(text: &str) -> (Outcome, Option<Advice>, Option<Advice>) {
+    let model = model(text);
+    let (before, advice) = advise(&model, &analyse(&model).unwrap()).unwrap();
+    let of = |remedy: &str| advice.iter().find(|one| one.remedy == remedy).cloned();
+    (before, of("flush"), of("fed_flush"))
+}
+
+/// For how long SF4 has cold water, s.
+fn cold_s(outcome: &Outcome) -> f64 {
+    outcome.cold_s["sf4.station"]
+}
+
+#[test]
+fn a_flush_is_advised_where_there_is_time_for_it() {
+    // Below 55 degC in the plug and while SF1 warms up, 60 ln 4 = 83.2 s.
+    let smooth = with_column(&text("model.toml"), "smooth_degc");
+    let (before, shared, fed) = advice(&smooth);
+    assert!((cold_s(&before) - PLUG_S - 83.2).abs() < 5.0, "{before:?}");
+    // SF2 gives 4 l/min more for 38.0 l and a twentieth, 599 s: what remains is SF1 itself, as of a pipe that was hot.
+    let fed = fed.unwrap();
+    assert!(fed.helps, "{fed:?}");
+    let left_s = cold_s(fed.outcome.as_ref().unwrap());
+    assert!((left_s / 83.2 - 1.0).abs() < 0.1, "{left_s}");
+    // Half of the 4 l/min of SF4 flush 20 l in the 600 s that there are: 18.0 l of plug are left, 270 s.
+    let shared = shared.unwrap();
+    let left_s = cold_s(shared.outcome.as_ref().unwrap());
+    assert!((left_s - PLUG_S * 18.0 / 38.0 - 83.2).abs() < 8.0, "{left_s}");
+    assert!(!shared.helps && shared.verdict.starts_with("helps in part"), "{shared:?}");
+}
+
+#[test]
+fn a_flush_that_comes_too_late_does_not_help() {
+    // 60 s at 4 l/min are 4 l of 38: nine tenths of the plug are left.
+    let early = text("model.toml").replace("[600, 4]", "[60, 4]");
+    let (before, shared, fed) = advice(&with_column(&early, "hot_degc"));
+    assert!((cold_s(&before) / PLUG_S - 1.0).abs() < 0.02, "{before:?}");
+    for (tried, litres) in [(shared.unwrap(), 2.0), (fed.unwrap(), 4.0)] {
+        let left_s = cold_s(tried.outcome.as_ref().unwrap());
+        assert!((left_s - PLUG_S * (1.0 - litres / 38.0)).abs() < 8.0, "{left_s}");
+        assert!(!tried.helps && tried.verdict.starts_with("does not help"), "{tried:?}");
+    }
+}
+
+#[test]
+fn nothing_is_flushed_where_no_plug_comes() {
+    let (before, shared, fed) = advice(&with_column(&flushed(&text("model.toml")), "hot_degc"));
+    assert!(before.cold_s.is_empty() && shared.is_none() && fed.is_none());
 }

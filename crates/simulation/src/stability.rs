@@ -7,6 +7,7 @@ pub mod advise;
 pub mod blocking;
 mod chain;
 mod count;
+mod flush;
 pub mod hunting;
 mod law;
 mod loops;

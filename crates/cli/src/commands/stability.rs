@@ -92,6 +92,9 @@ fn print_advice(before: &Outcome, advice: &[Advice]) {
         names(&before.swinging),
         names(&before.blocked)
     );
+    for (station, cold_s) in &before.cold_s {
+        line!("a feeder starts: cold water at {station} for {cold_s:.0} s");
+    }
     if advice.is_empty() {
         line!("nothing to advise");
     }
@@ -109,7 +112,15 @@ fn print_loops(found: &Stability) {
         line!("no controllers: nothing can hunt");
         return;
     }
-    let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.4}"));
+    // Gains per Pa are small numbers.
+    let gain = |value: f64| {
+        if value.abs() < 1e-2 && value != 0.0 {
+            format!("{value:.3e}")
+        } else {
+            format!("{value:.4}")
+        }
+    };
+    let number = |value: Option<f64>| value.map_or("-".to_owned(), gain);
     let rows: Vec<Vec<String>> = found
         .controllers
         .iter()
@@ -127,7 +138,7 @@ fn print_loops(found: &Stability) {
             };
             vec![
                 c.id.clone(),
-                format!("{:.4}", c.gain),
+                gain(c.gain),
                 number(c.critical_gain),
                 number(c.critical_gain_alone),
                 number(c.relative_gain),

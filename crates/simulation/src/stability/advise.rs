@@ -1,13 +1,13 @@
-//! Remedies against hunting and blocking: each is a few changed values of the model, and each is tried in a run.
+//! Remedies against hunting, blocking and cold plugs: each is a few changed values of the model, and each is tried in a run.
 //!
 //! **Method** every remedy is run from the steady state with the set point of one controller pushed by 15 % after
 //! a minute; what hunts, oscillates or is blocked at the end of the run decides. Gains: half of the critical
 //! one (6 dB), and divided by the relative gain of their loop, which for feeders at one shared resistance is about
 //! `1 + R_shared/R_own`. Speed cap: the speeds of the pumps that hold a blocked feeder back are lowered in
 //! proportion until it delivers half of what it means to. Pressure limit: the same pumps hold the pressure differences
-//! that they have then, which stay what they are where valves close. **Sources** specification 4.3.
+//! that they have then, which stay what they are where valves close. Flushing: `flush.rs`. **Sources** specification 4.3.
 
-use super::{Stability, analyse};
+use super::{Stability, analyse, flush};
 use crate::build::build;
 use crate::error::RunError;
 use crate::model::{DriverSpec, Model, Place};
@@ -16,10 +16,11 @@ use crate::simulation::Simulation;
 use crate::steady;
 use anergy_control::controllers::ControllerParams;
 use anergy_core::clock::Time;
+use anergy_core::recorder::Event;
 use anergy_network::elements::ElementParams;
 use anergy_network::elements::pump::{PumpMode, PumpParams};
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Share of the critical gain that is safe.
 const SAFE: f64 = 0.5;
@@ -42,12 +43,32 @@ pub struct Outcome {
     pub swinging: BTreeSet<String>,
     /// Stations that are blocked.
     pub blocked: BTreeSet<String>,
+    /// Stations that took heat and got cold water when a feeder started, and how long, s.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub cold_s: BTreeMap<String, f64>,
+}
+
+impl Outcome {
+    /// Notes what begins and what ends.
+    pub(super) fn hear(&mut self, event: Event) {
+        let set = match event.kind.as_str() {
+            "hunting" | "oscillating" | "hunting_ended" | "oscillating_ended" => &mut self.swinging,
+            "blocked" | "unblocked" => &mut self.blocked,
+            _ => return,
+        };
+        let begins = matches!(event.kind.as_str(), "hunting" | "oscillating" | "blocked");
+        if begins {
+            set.insert(event.component)
+        } else {
+            set.remove(&event.component)
+        };
+    }
 }
 
 /// A remedy and what became of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
-    /// `lower_gain`, `gain_scheduling`, `dead_band`, `staggered_sampling`, `speed_cap`, `dp_limit`.
+    /// `lower_gain`, `gain_scheduling`, `dead_band`, `staggered_sampling`, `speed_cap`, `dp_limit`, `flush`, `fed_flush`.
     pub remedy: &'static str,
     /// The values to write into the model file.
     pub changes: Vec<String>,
@@ -65,7 +86,7 @@ pub struct Advice {
 /// When the model itself cannot be run.
 pub fn advise(model: &Model, found: &Stability) -> Result<(Outcome, Vec<Advice>), RunError> {
     let horizon_s = horizon_s(found);
-    let before = run(model, horizon_s)?;
+    let mut before = run(model, horizon_s)?;
     let mut advice = Vec::new();
     if !before.swinging.is_empty() || found.controllers.iter().any(|c| !c.stable) {
         for (remedy, changed) in hunting_remedies(model, found) {
@@ -81,6 +102,10 @@ pub fn advise(model: &Model, found: &Stability) -> Result<(Outcome, Vec<Advice>)
                 advice.push(tried(remedy, changed, horizon_s, &before, |o| &o.blocked));
             }
         }
+    }
+    if let Some((cold_s, flushes)) = flush::advise(model)? {
+        before.cold_s = cold_s;
+        advice.extend(flushes);
     }
     Ok((before, advice))
 }
@@ -135,21 +160,7 @@ fn run(model: &Model, horizon_s: f64) -> Result<Outcome, RunError> {
     let end = Time::from_s(horizon_s).unwrap_or(Time::ZERO);
     let mut outcome = Outcome::default();
     simulation.advance_to(end, step.min(simulation.plan().step()))?;
-    for event in simulation.take_events() {
-        let set = match event.kind.as_str() {
-            "hunting" | "oscillating" | "hunting_ended" | "oscillating_ended" => {
-                &mut outcome.swinging
-            }
-            "blocked" | "unblocked" => &mut outcome.blocked,
-            _ => continue,
-        };
-        let begins = matches!(event.kind.as_str(), "hunting" | "oscillating" | "blocked");
-        if begins {
-            set.insert(event.component)
-        } else {
-            set.remove(&event.component)
-        };
-    }
+    simulation.take_events().for_each(|event| outcome.hear(event));
     Ok(outcome)
 }
 
