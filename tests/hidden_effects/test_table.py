@@ -7,7 +7,7 @@ from table import captured, ece, head, metrics, share, wilson
 def named(id_, component, probability, value=1.0):
     effect = {"id": id_, "component": component, "probability": probability, "params": {"factor": {"value": value, "lo": 0.9 * value, "hi": 1.1 * value}}}
     return {"verdict": "named", "effects": [effect], "class": [], "tried": [], "seconds": 2.0, "show_rmse_before": {"T": 3.0, "dp": 1.0},
-            "show_rmse_after": {"T": 1.0, "dp": 1.05}, "z_after": {"T": 1.1, "dp": 1.0}}
+            "show_rmse_after": {"T": 1.0, "dp": 1.05}, "z_fitted": {"T": 1.1, "dp": 1.3}, "oracle": {"T": 0.5, "dp": 1.0}}
 
 
 NOTHING = {"verdict": "nothing", "effects": [], "class": [], "tried": [], "seconds": 4.0}
@@ -15,7 +15,7 @@ NOTHING = {"verdict": "nothing", "effects": [], "class": [], "tried": [], "secon
 
 def single(id_, component, value=1.0, stratum="easy", more=()):
     return {"kind": "single", "rich": True, "stratum": stratum, "effects": [{"id": id_, "component": component, "parameter": "factor", "value": value}],
-            "class": [[id_, component], *more], "strict": [[id_, component]], "near": [component, "beside"], "untouched": ["dp"], "oracle": {"T": 0.5, "dp": 1.0}}
+            "class": [[id_, component], *more], "strict": [[id_, component]], "near": [component, "beside"], "untouched": ["dp"]}
 
 
 def test_interval_of_wilson():
@@ -34,7 +34,7 @@ def test_calibration():
 
 def test_share_of_the_gap():
     # T: (3 - 1)/(3 - 0.5) = 0.8; dp has no gap.
-    assert captured(single("P1", "pipe"), named("P1", "pipe", 0.9)) == pytest.approx(0.8)
+    assert captured(named("P1", "pipe", 0.9)) == pytest.approx(0.8)
 
 
 def test_what_counts_as_right():
@@ -50,6 +50,9 @@ def test_what_counts_as_right():
     assert rows["first name exactly right"].endswith("1/3)")
     # 1.8 instead of 2, over 2 - 1.
     assert rows["error of the parameter, median"].startswith("20.0 %")
+    # T is affected, dp is not.
+    assert rows["residuals at the affected sensors at most 1.2 sigma"].startswith("100 %")
+    assert rows["share of the gap closed, median (10th percentile)"].startswith("0.80")
     # dp is untouched and 5 % worse, twice.
     assert rows["unaffected sensors made worse by more than 2 %"] == "2 of 2"
     assert rows["seconds a case, median (95th percentile)"] == "3 (4)"

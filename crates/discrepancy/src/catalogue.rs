@@ -15,6 +15,9 @@ pub(crate) use seen::Use;
 use crate::experiment::Experiment;
 use crate::unknown::{Target, Unknown};
 
+/// What lies within so many standard deviations of a tolerance belongs to it.
+const WITHIN: f64 = 2.0;
+
 /// A group of effects.
 struct Group {
     /// Adds the effects that may be missing from the model of an experiment.
@@ -99,6 +102,11 @@ impl Candidate {
             }
         };
         middle + a * (coordinate - middle)
+    }
+
+    /// Whether a fitted coordinate is no more than the tolerance of its quantity.
+    pub fn within(&self, coordinate: f64) -> bool {
+        self.tolerance.is_some() && self.strain(coordinate) < WITHIN
     }
 
     /// How far a fitted coordinate lies outside of what is plausible without the effect or, where there is no

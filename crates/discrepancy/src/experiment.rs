@@ -1,7 +1,7 @@
 //! The model under the measured inputs: what every compared sensor should have read.
 //!
 //! Measured inputs drive their signals (`inputs`). What is a mean over a step belongs to its middle, a state to its end
-//! ([`Moment`]); the water of a run begins at the mean of the temperatures that are read first.
+//! ([`Moment`]); the water of a run begins at the median of the temperatures that are read first.
 
 use crate::catalogue::Use;
 use crate::data::{Run, Track};
@@ -9,6 +9,7 @@ use crate::error::ExplainError;
 use crate::inputs::Input;
 use crate::response::{Response, lagged};
 use crate::sensors::{Accuracy, Role, Sensor, SensorFile};
+use crate::uncertainty::interval_s;
 use crate::unknown::{Target, Unknown};
 use anergy_core::clock::Time;
 use anergy_core::ids::ChannelId;
@@ -25,6 +26,9 @@ use std::sync::OnceLock;
 
 /// Longest lag of an input over the shortest run.
 const LONGEST_LAG: f64 = 0.25;
+
+/// A reading within so many intervals of the begin of a run tells how it began.
+const EARLY: f64 = 2.0;
 
 /// What stands in the names of temperatures that are none of water.
 const AIR: [&str; 6] = ["weather.", "ground", "soil", "room", "roof", "cellar"];
@@ -200,15 +204,23 @@ impl Experiment {
         self.sensors.sensor[one].clock == self.sensors.sensor[other].clock
     }
 
-    /// Mean of the temperatures of water that a run reads first, and how far they lie from it, K.
-    pub fn first_k(&self, run: usize) -> Option<(f64, f64)> {
-        let tracks = self.runs[run].tracks.iter().zip(&self.sensors.sensor);
-        let first = tracks.filter(|(_, sensor)| self.is_of_water(sensor));
-        let first = first.map(|(track, _)| track.value[0]);
-        let first: Vec<f64> = first.collect();
-        let mean = first.iter().sum::<f64>() / first.len() as f64;
-        let far = first.iter().fold(0.0_f64, |far, t| far.max((t - mean).abs()));
-        (!first.is_empty()).then_some((mean, far))
+    /// What the temperatures of water that a run reads first say of its beginning.
+    pub fn first(&self, run: usize) -> Option<First> {
+        let (run, begin_s) = (&self.runs[run], self.runs[run].span_s.0);
+        let of_water = |k: &usize| self.is_of_water(&self.sensors.sensor[*k]);
+        let water: Vec<usize> = (0..run.tracks.len()).filter(of_water).collect();
+        // A meter that reads nothing while nothing flows reads first what came later.
+        let is_early = |k: &usize| {
+            let track = &run.tracks[*k];
+            track.time_s[0] - begin_s <= EARLY * interval_s(track)
+        };
+        let early: Vec<usize> = water.iter().copied().filter(is_early).collect();
+        let of = if early.is_empty() { water } else { early };
+        let middle_k = median(of.iter().map(|&k| run.tracks[k].value[0]))?;
+        let away = |k: &usize| (run.tracks[*k].value[0] - middle_k).abs();
+        let beyond = |k: &usize| (away(k) - 3.0_f64.sqrt() * self.accuracy[*k].bias).max(0.0);
+        let far_k = of.iter().map(away).fold(0.0, f64::max);
+        Some(First { middle_k, far_k, uneven_k: median(of.iter().map(beyond))? })
     }
 
     /// Whether a sensor reads the temperature of water: not of air, rooms or ground.
@@ -270,12 +282,12 @@ impl Experiment {
                 model.drivers.push(input.driver(run.span_s, step, rows));
             }
         }
-        if let Some((mean_k, _)) = self.first_k(index) {
+        if let Some(first) = self.first(index) {
             let offset = |(unknown, at): (&Unknown, &f64)| match unknown.target {
                 Target::Initial(of) if of == index => unknown.value(*at),
                 _ => 0.0,
             };
-            model.run.initial_k = mean_k + unknowns.iter().zip(at).map(offset).sum::<f64>();
+            model.run.initial_k = first.middle_k + unknowns.iter().zip(at).map(offset).sum::<f64>();
         }
         Ok((Simulation::new(build(&model).map_err(ExplainError::Model)?)?, rows))
     }
@@ -366,6 +378,25 @@ impl Experiment {
     }
 }
 
+/// The water at the beginning of a run, as the temperatures that are read first say, K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct First {
+    /// Their median: with which a simulation begins.
+    pub middle_k: f64,
+    /// How far the furthest one lies from it.
+    pub far_k: f64,
+    /// Median of how far they lie from it beyond what their classes allow.
+    pub uneven_k: f64,
+}
+
+/// The middle one, or the mean of the two in the middle.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
+}
+
 /// Compared quantities of every run and sensor, before the sensors.
 #[derive(Debug, Clone, Default)]
 pub struct Simulated(Vec<Vec<Track>>);
@@ -374,4 +405,26 @@ pub struct Simulated(Vec<Vec<Track>>);
 fn suffix(quantity: &str) -> &str {
     let ends = |si: &&&str| quantity.strip_suffix(**si).is_some_and(|rest| rest.ends_with('_'));
     anergy_core::units::SI_SUFFIXES.iter().find(ends).copied().unwrap_or("")
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::bench;
+
+    #[test]
+    fn a_run_begins_as_its_first_readings_say() {
+        let mut experiment = bench::experiment(&[]);
+        // Inlet, middle and house begin at 47 degC; the house reads nothing until water of 62 degC has come.
+        let late = &mut experiment.runs[0].tracks[3];
+        late.time_s.drain(..250);
+        late.value.drain(..250);
+        let first = experiment.first(0).unwrap();
+        assert!((first.middle_k - 320.15).abs() < 0.2 && first.far_k < 0.2, "{first:?}");
+        // Three readings, one 8 K apart: the median counts. Within (0.15 + 0.002 * 47) K nothing is uneven; the middle one is.
+        experiment.runs[0].tracks[3].time_s[0] = 5.0;
+        experiment.runs[0].tracks[3].value[0] = 328.15;
+        let first = experiment.first(0).unwrap();
+        assert!((first.middle_k - 320.15).abs() < 0.2 && (first.far_k - 8.0).abs() < 0.2);
+        assert_eq!(first.uneven_k, 0.0, "{first:?}");
+    }
 }

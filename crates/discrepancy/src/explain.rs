@@ -63,6 +63,8 @@ pub struct Finding {
     pub strain: f64,
     /// Distance from the middle of the range of the effect, standard deviations.
     pub beyond: f64,
+    /// Whether it is no more than the tolerance of its quantity: a sensor that drifts within its class.
+    pub within: bool,
     /// Root mean square of all residuals on the validation samples over their uncertainty.
     pub validation_z: f64,
     /// The largest reduction of the error of a sensor on the validation samples, relative.
@@ -179,7 +181,7 @@ pub fn explain(
             problems => return Ok(data_problem(problems)),
         },
     };
-    let sigma = uncertainties(experiment, &before)?;
+    let sigma = uncertainties(experiment, &before);
     watch.lap("uncertainty");
     let problems = sanity::beside(experiment, &before, &sigma);
     watch.lap("sanity");
@@ -207,16 +209,21 @@ pub fn explain(
         tried,
         null_readings,
         additions,
+        null: _,
         chosen,
     } = settled;
     let found = find(experiment, &uses, &sigma, &before, &null_readings)?;
     watch.lap("find");
     // What the written model gives: the effects alone, every tolerance at its middle.
-    let after = match &chosen {
-        Some((unknowns, at)) => alone(experiment, &all, &taken, unknowns, at, &mut found_effects)?,
-        None => before.clone(),
+    let (after, fitted) = match &chosen {
+        Some((unknowns, at)) => (
+            alone(experiment, &all, &taken, unknowns, at, &mut found_effects)?,
+            experiment.readings(unknowns, at)?,
+        ),
+        None => (before.clone(), null_readings),
     };
-    let gaps = gaps(experiment, &uses, &sigma, &before, &after);
+    let fitted = if fitted.is_empty() { &before } else { &fitted };
+    let gaps = gaps(experiment, &uses, &sigma, &before, &after, fitted);
     watch.lap("show");
     Ok(Explanation {
         verdict,
@@ -232,6 +239,21 @@ pub fn explain(
         times: watch.times,
         curves: Curves { before, after, sigma, uses },
     })
+}
+
+/// Compares only: how far the model is from the measurements on every use of the samples, and fits nothing. (An explained model
+/// beside new data; a model that somebody has mended.)
+///
+/// # Errors
+/// Files that cannot be read, a model that does not run.
+pub fn compare(
+    experiment: &Experiment,
+    split_file: Option<&SplitFile>,
+) -> Result<Vec<Gap>, ExplainError> {
+    let uses = split(experiment, split_file)?;
+    let before = experiment.readings(&[], &[])?;
+    let sigma = uncertainties(experiment, &before);
+    Ok(gaps(experiment, &uses, &sigma, &before, &before, &before))
 }
 
 /// Readings with the effects alone; their values are those of the last fit.

@@ -314,9 +314,8 @@ impl Problem<'_> {
         wanted: &[usize],
         slopes: &mut Slopes,
     ) -> Result<(), ExplainError> {
-        let slope = |j: usize| -> Result<Vec<f64>, ExplainError> {
+        let toward = |j: usize, step: f64| -> Result<Vec<f64>, ExplainError> {
             let mut beside = at.to_vec();
-            let step = DIFFERENCE * self.unknowns[j].sd;
             beside[j] += step;
             let changed = if self.experiment.is_simulated(&self.unknowns[j].target) {
                 self.experiment.readings(self.unknowns, &beside)?
@@ -324,6 +323,11 @@ impl Problem<'_> {
                 self.experiment.observed(&here.simulated, self.unknowns, &beside)
             };
             Ok(changed.iter().zip(&here.readings).map(|(y, y0)| (y - y0) / step).collect())
+        };
+        // At the edge of where the model runs the other side tells the slope.
+        let slope = |j: usize| {
+            let step = DIFFERENCE * self.unknowns[j].sd;
+            toward(j, step).or_else(|error| toward(j, -step).map_err(|_| error))
         };
         let found: Vec<_> = if self.care == Care::Alone {
             on_all_cores(wanted.len(), |k| slope(wanted[k]))
@@ -353,4 +357,30 @@ pub(crate) fn curvature(sensitivity: &DMatrix<f64>, unknowns: &[Unknown]) -> DMa
         hessian[(i, i)] += 1.0 / (unknown.sd * unknown.sd);
     }
     hessian
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+
+    #[test]
+    fn a_trial_with_which_the_model_does_not_run_shortens_the_step() {
+        // Water of 62 degC at most, valid until 99 degC: 36.5 K warmer it runs, 0.02 * 100 K more it does not.
+        let experiment = bench::experiment(&[]);
+        let offset = Unknown { start: 36.5, ..Unknown::plain(Target::Bias(0), 0.0, 100.0) };
+        assert!(experiment.readings(std::slice::from_ref(&offset), &[-38.5]).is_err());
+        let n = experiment.samples.len();
+        let likelihood = Likelihood::new(vec![0.1; n], (0..n).collect());
+        let alone = |offset: Unknown| {
+            fit(&experiment, &[offset], &likelihood, &Slopes::new(), Care::Quick).unwrap()
+        };
+        for start in [-36.5, 0.5] {
+            let found = alone(Unknown { start, ..offset.clone() });
+            assert!(found.at[0].abs() < 0.02, "{start}: {}", found.at[0]);
+        }
+        // Nothing runs at its start: no fit.
+        let none = Unknown { start: -60.0, ..offset };
+        assert!(fit(&experiment, &[none], &likelihood, &Slopes::new(), Care::Quick).is_err());
+    }
 }

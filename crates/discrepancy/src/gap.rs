@@ -26,15 +26,18 @@ pub struct Gap {
     pub z_before: f64,
     /// With the effects.
     pub z_after: f64,
+    /// With the effects, and offsets, clocks and tolerances as they were fitted: what is left when all is said.
+    pub z_fitted: f64,
 }
 
-/// All gaps that have samples.
+/// All gaps that have samples: readings `before` and `after` the effects, and with everything as it was `fitted`.
 pub fn gaps(
     experiment: &Experiment,
     uses: &[Option<Use>],
     sigma: &[f64],
     before: &[f64],
     after: &[f64],
+    fitted: &[f64],
 ) -> Vec<Gap> {
     let changing = changing(experiment);
     let mut gaps = Vec::new();
@@ -65,6 +68,7 @@ pub fn gaps(
                     rmse_after: reading(rms(after, &|_| 1.0)),
                     z_before: rms(before, &|i| sigma[i]),
                     z_after: rms(after, &|i| sigma[i]),
+                    z_fitted: rms(fitted, &|i| sigma[i]),
                 });
             }
         }

@@ -86,7 +86,7 @@ impl Input<'_> {
 }
 
 /// The quantity in front of a first-order lag.
-fn before_lag(track: &Track, lag_s: f64) -> Track {
+pub(crate) fn before_lag(track: &Track, lag_s: f64) -> Track {
     let (t, y) = (&track.time_s, &track.value);
     if lag_s <= 0.0 || t.len() < 2 {
         return track.clone();

@@ -17,6 +17,7 @@ pub mod explain;
 pub mod find;
 pub mod fit;
 pub mod gap;
+mod grid;
 mod inputs;
 pub mod next;
 pub mod noise;

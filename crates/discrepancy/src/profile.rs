@@ -8,7 +8,6 @@
 //!
 //! **Sources** Raue et al. 2009 (key `raue2009`).
 
-use crate::error::ExplainError;
 use crate::experiment::Experiment;
 use crate::fit::{BOUND_SD, Care, Fit, Likelihood, fit};
 use crate::unknown::Unknown;
@@ -32,36 +31,34 @@ pub struct Profile {
 }
 
 /// The profile of the unknown at `place`.
-///
-/// # Errors
-/// What keeps the model from running.
 pub fn profile(
     experiment: &Experiment,
     unknowns: &[Unknown],
     likelihood: &Likelihood,
     at: &Fit,
     place: usize,
-) -> Result<Profile, ExplainError> {
+) -> Profile {
     let own = &unknowns[place];
     let bound = |sign: f64| own.mean + sign * BOUND_SD * own.sd;
-    let objective = |x: f64| -> Result<f64, ExplainError> {
+    let objective = |x: f64| -> f64 {
         let mut fixed = unknowns.to_vec();
         for (unknown, at) in fixed.iter_mut().zip(&at.at) {
             unknown.start = *at;
         }
         fixed[place] = Unknown { mean: x, start: x, sd: FIXED * own.sd, ..own.clone() };
-        let found = fit(experiment, &fixed, likelihood, &at.slopes, Care::Quick)?;
-        Ok(without_own(&found, &fixed, place))
+        // A value with which the model does not run is none.
+        let found = fit(experiment, &fixed, likelihood, &at.slopes, Care::Quick);
+        found.map_or(f64::INFINITY, |found| without_own(&found, &fixed, place))
     };
     let least = without_own(at, unknowns, place);
     // Standard deviation by the data and the other priors alone.
     let own_precision = 1.0 / (own.sd * own.sd);
     let precision = 1.0 / at.covariance[(place, place)].max(1e-300) - own_precision;
     let sd = if precision > 1e-6 * own_precision { precision.powf(-0.5) } else { 1e3 * own.sd };
-    Ok(Profile {
-        lo: end(&objective, at.at[place], least, -sd, bound(-1.0))?,
-        hi: end(&objective, at.at[place], least, sd, bound(1.0))?,
-    })
+    Profile {
+        lo: end(&objective, at.at[place], least, -sd, bound(-1.0)),
+        hi: end(&objective, at.at[place], least, sd, bound(1.0)),
+    }
 }
 
 /// Objective of a fit without the prior of one unknown.
@@ -72,24 +69,28 @@ fn without_own(fit: &Fit, unknowns: &[Unknown], place: usize) -> f64 {
 
 /// Where the objective has risen by [`RISE`], from the middle towards a bound; `sd` has the sign of the side.
 fn end(
-    objective: &dyn Fn(f64) -> Result<f64, ExplainError>,
+    objective: &dyn Fn(f64) -> f64,
     middle: f64,
     least: f64,
     sd: f64,
     bound: f64,
-) -> Result<Option<f64>, ExplainError> {
+) -> Option<f64> {
     let root = RISE.sqrt();
     let within =
         |step: f64| if sd > 0.0 { step.min(bound - middle) } else { step.max(bound - middle) };
     let (mut before, mut height_before) = (0.0, 0.0);
     let mut step = within(root * sd);
     for _ in 0..FITS {
-        let height = (objective(middle + step)? - least).max(0.0).sqrt();
+        let height = (objective(middle + step) - least).max(0.0).sqrt();
+        if height.is_infinite() {
+            step = 0.5 * (before + step);
+            continue;
+        }
         if (height - root).abs() < NEAR * root {
-            return Ok(Some(middle + step * root / height));
+            return Some(middle + step * root / height);
         }
         if height < root && step == within(f64::INFINITY.copysign(sd)) {
-            return Ok(None);
+            return None;
         }
         // The line through the last two points, at most three times as far.
         let slope = (height - height_before) / (step - before);
@@ -108,7 +109,7 @@ fn end(
         }
         step = within(next);
     }
-    Ok(Some(middle + step))
+    Some(middle + step)
 }
 
 #[cfg(test)]
@@ -118,19 +119,31 @@ mod tests {
     #[test]
     fn ends_by_hand() {
         // F = (x/0.5)^2 rises by 3.84 at 0.98.
-        let parabola = |x: f64| Ok((x / 0.5).powi(2));
-        let found = end(&parabola, 0.0, 0.0, 0.3, 10.0).unwrap().unwrap();
+        let parabola = |x: f64| (x / 0.5).powi(2);
+        let found = end(&parabola, 0.0, 0.0, 0.3, 10.0).unwrap();
         assert!((found - 0.98).abs() < 1e-3, "{found}");
-        let found = end(&parabola, 0.0, 0.0, -2.0, -10.0).unwrap().unwrap();
+        let found = end(&parabola, 0.0, 0.0, -2.0, -10.0).unwrap();
         assert!((found + 0.98).abs() < 1e-3, "{found}");
         // Steeper above than below: ln-like.
-        let skew = |x: f64| Ok((x.exp() - 1.0).powi(2) * 4.0);
+        let skew = |x: f64| (x.exp() - 1.0).powi(2) * 4.0;
         // e^x - 1 = 0.98: x = 0.683.
-        let found = end(&skew, 0.0, 0.0, 0.5, 10.0).unwrap().unwrap();
+        let found = end(&skew, 0.0, 0.0, 0.5, 10.0).unwrap();
         assert!((found - 0.683).abs() < 0.03, "{found}");
         // Below it never rises by more than 4 (1)^2 = 4 > 3.84 only at e^x = 0.02.
-        assert_eq!(end(&skew, 0.0, 0.0, -0.5, -2.0).unwrap(), None);
+        assert_eq!(end(&skew, 0.0, 0.0, -0.5, -2.0), None);
         // Flat: open.
-        assert_eq!(end(&|_| Ok(0.0), 0.0, 0.0, 1.0, 6.0).unwrap(), None);
+        assert_eq!(end(&|_| 0.0, 0.0, 0.0, 1.0, 6.0), None);
+    }
+
+    #[test]
+    fn a_value_with_which_the_model_does_not_run_shortens_the_step() {
+        // The first step, 1.96 * 0.8 = 1.57, ends where nothing runs; half of it is 0.784: 1.568^2, less than 1.96^2.
+        let edge = |x: f64| if x > 1.0 { f64::INFINITY } else { (x / 0.5).powi(2) };
+        let found = end(&edge, 0.0, 0.0, 0.8, 10.0).unwrap();
+        assert!((found - 0.98).abs() < 1e-3, "{found}");
+        // It runs nowhere near the end: between the last value that runs and the first that does not.
+        let near = |x: f64| if x > 0.3 { f64::INFINITY } else { (x / 0.5).powi(2) };
+        let found = end(&near, 0.0, 0.0, 0.8, 10.0).unwrap();
+        assert!(found > 0.0 && found < 0.8, "{found}");
     }
 }

@@ -28,7 +28,7 @@ const WINS: f64 = 4.0;
 /// as many samples also tell the layers of a model from the water of a storage.
 const WITHIN: f64 = 0.75;
 /// ... with evidence above this, nats.
-const SURE: f64 = 25.0;
+const SURE: f64 = 20.0;
 /// The same, where it foretells no better than strained tolerances.
 const STRAINS: f64 = 8.0;
 /// Log predictive density by which it must beat it, nats; and as many standard errors.
@@ -84,17 +84,19 @@ pub(crate) struct Settled {
     pub(crate) null_readings: Vec<f64>,
     /// What would tell the members of the class apart, the most telling first.
     pub(crate) additions: Vec<Addition>,
+    /// The unknowns without an effect, and their values.
+    pub(crate) null: (Vec<Unknown>, Vec<f64>),
     /// The unknowns of the last fit, and their values.
     pub(crate) chosen: Option<(Vec<Unknown>, Vec<f64>)>,
 }
 
 impl Settled {
-    /// Every unknown of the last fit: its name, value, and distance from the middle of its range in standard deviations.
+    /// Every unknown of the last fit, without an effect of that of the tolerances: its name, value, and distance from the middle of its range in standard deviations.
     pub(crate) fn strained(&self) -> Vec<(String, f64, f64)> {
         let of =
             |(u, at): (&Unknown, &f64)| (u.target.to_string(), u.value(*at), (at - u.mean) / u.sd);
-        let chosen = self.chosen.iter().flat_map(|(unknowns, at)| unknowns.iter().zip(at).map(of));
-        let mut all: Vec<_> = chosen.collect();
+        let (unknowns, at) = self.chosen.as_ref().unwrap_or(&self.null);
+        let mut all: Vec<_> = unknowns.iter().zip(at).map(of).collect();
         all.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
         all
     }
@@ -154,6 +156,7 @@ impl<'a> Search<'a> {
             tried: Vec::new(),
             null_readings: Vec::new(),
             additions: Vec::new(),
+            null: (Vec::new(), Vec::new()),
             chosen: None,
         };
         let mut first: Option<First> = None;
@@ -166,6 +169,7 @@ impl<'a> Search<'a> {
             let z = self.z(&null.readings);
             if is_first {
                 settled.null_readings.clone_from(&null.readings);
+                settled.null = (self.base.clone(), null.at.clone());
             }
             let worst =
                 differs(self.experiment, &self.likelihood.sigma, &null.readings, &self.validated);
@@ -314,7 +318,7 @@ impl<'a> Search<'a> {
             .map(|s| Start { candidates: vec![s.candidate], at: vec![s.start], earlier: None })
             .collect();
         // At first every sample counts in full, so that each candidate shows how well it can fit.
-        let mut rough = self.common().fits(&starts, Care::Quick)?;
+        let mut rough = self.common().fits(&starts, Care::Quick);
         watch.lap("fits");
         rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         rough.truncate(MOST_COMPARED);
@@ -325,14 +329,14 @@ impl<'a> Search<'a> {
         self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
         let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
-        let mut tried = self.common().fits(&again, Care::Quick)?;
+        let mut tried = self.common().fits(&again, Care::Quick);
         tried.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         // Those that may win, or belong to its class, with all sensitivities renewed.
         let most = tried.first().map_or(0.0, |best| best.fit.log_evidence);
         let near = CLOSE.max(2.0 * NEARLY * (most - null.log_evidence));
         let close = tried.partition_point(|t| t.fit.log_evidence > most - near).min(MOST_CLOSE);
         let thorough: Vec<Start> = tried.drain(..close).map(Start::again).collect();
-        tried.extend(self.common().fits(&thorough, Care::Thorough)?);
+        tried.extend(self.common().fits(&thorough, Care::Thorough));
         watch.lap("fits again");
         let null_z = self.z(&null.readings);
         let findings = self.ranked(&null, &mut tried);
@@ -358,7 +362,7 @@ impl<'a> Search<'a> {
         self.taken.extend(&tried.candidates);
         for (finding, &place) in findings.iter().zip(&tried.places) {
             let (unknowns, fit) = (&tried.unknowns, &tried.fit);
-            let profile = profile(self.experiment, unknowns, &self.likelihood, fit, place)?;
+            let profile = profile(self.experiment, unknowns, &self.likelihood, fit, place);
             settled.effects.push(finding.clone().with_profile(profile, &unknowns[place]));
         }
         let started = tried.unknowns.iter().zip(&tried.fit.at);
@@ -371,7 +375,7 @@ impl<'a> Search<'a> {
 
 /// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
 fn wins(f: &Finding, null_z: f64) -> bool {
-    if null_z < WITHIN && f.evidence < SURE {
+    if f.within || (null_z < WITHIN && f.evidence < SURE) {
         return false;
     }
     let (nats, errors) = FORETELLS;

@@ -69,6 +69,7 @@ pub fn json(explanation: &Explanation) -> Value {
         "times_s": explanation.times.iter().map(|(part, s)| ((*part).to_owned(), Value::from(*s))).collect::<Map<_, _>>(),
         "show_rmse_before": shown(&|gap| gap.rmse_before),
         "show_rmse_after": shown(&|gap| gap.rmse_after),
+        "show_z_fitted": shown(&|gap| gap.z_fitted),
         "gaps": explanation.gaps,
     })
 }

@@ -52,23 +52,17 @@ impl Start {
 }
 
 impl Common<'_> {
-    /// Fits beside what is there.
-    ///
-    /// # Errors
-    /// What keeps the model from running with every one of them.
-    pub fn fits(&self, starts: &[Start], care: Care) -> Result<Vec<Tried>, ExplainError> {
-        let done = on_all_cores(starts.len(), |k| self.fit_one(&starts[k], care));
-        // A candidate with which the model does not run is none, unless it runs with none of them.
-        let (ran, failed): (Vec<_>, Vec<_>) = done.into_iter().partition(Result::is_ok);
-        if ran.is_empty()
-            && let Some(error) = failed.into_iter().find_map(Result::err)
-        {
-            return Err(error);
-        }
-        Ok(ran.into_iter().filter_map(Result::ok).collect())
+    /// Fits beside what is there. A candidate with which the model does not run, nor with half and a quarter of it, is none.
+    pub fn fits(&self, starts: &[Start], care: Care) -> Vec<Tried> {
+        let weaker = |k: usize| {
+            let trials = [1.0, 0.5, 0.25].into_iter();
+            trials.filter_map(|share| self.fit_one(&starts[k], share, care).ok()).next()
+        };
+        on_all_cores(starts.len(), weaker).into_iter().flatten().collect()
     }
 
-    fn fit_one(&self, start: &Start, care: Care) -> Result<Tried, ExplainError> {
+    /// The fit from this share of the strength.
+    fn fit_one(&self, start: &Start, share: f64, care: Care) -> Result<Tried, ExplainError> {
         let own: Vec<&Candidate> = start.candidates.iter().map(|&k| &self.all[k]).collect();
         let taken = |unknown: &&Unknown| !own.iter().any(|c| c.unknown.target == unknown.target);
         let mut unknowns: Vec<Unknown> = self.base.iter().filter(taken).cloned().collect();
@@ -77,7 +71,8 @@ impl Common<'_> {
         }
         let first = unknowns.len();
         for (candidate, at) in own.iter().zip(&start.at) {
-            unknowns.push(Unknown { start: *at, ..candidate.unknown.clone() });
+            let start = if share < 1.0 { candidate.scaled(*at, share) } else { *at };
+            unknowns.push(Unknown { start, ..candidate.unknown.clone() });
         }
         let mut slopes = self.slopes;
         if let Some(earlier) = &start.earlier {
@@ -105,4 +100,34 @@ pub fn cosine(a: &Tried, b: &Tried) -> f64 {
     };
     let (a, b) = (own(a), own(b));
     (a.dot(&b) / (a.norm() * b.norm()).max(1e-300)).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+    use crate::catalogue::candidates;
+
+    #[test]
+    fn what_does_not_run_is_tried_weaker_or_is_worthless() {
+        let experiment = bench::experiment(&[]);
+        let all = candidates(&experiment);
+        let is_offset = |c: &Candidate| (c.id, c.component.as_str()) == ("S1", "T_in");
+        let k = all.iter().position(is_offset).unwrap();
+        let n = experiment.samples.len();
+        let likelihood = Likelihood::new(vec![0.1; n], (0..n).collect());
+        let (base, slopes) = (Vec::new(), Slopes::new());
+        let common = Common {
+            experiment: &experiment,
+            base: &base,
+            all: &all,
+            likelihood: &likelihood,
+            slopes: &slopes,
+        };
+        let from = |at: f64| Start { candidates: vec![k], at: vec![at], earlier: None };
+        // The sensor reads 50 K too little: water of 62 + 50 degC. Half of it runs.
+        let tried = common.fits(&[from(-50.0), from(-500.0)], Care::Quick);
+        assert_eq!(tried.len(), 1);
+        assert!(tried[0].fit.at[0].abs() < 0.02, "{:?}", tried[0].fit.at);
+    }
 }

@@ -1,10 +1,11 @@
 //! How far a reading may lie from the right model: sigma of every sample.
 //!
 //! **Equation** `sigma^2 = noise^2 + lsb^2/12 + (jitter dy/dt)^2 + sigma_num^2 + sigma_in^2 + sigma_0^2`. `sigma_num` is the
-//! difference to half the step. `sigma_in` is what noise, resolution and jitter of the measured inputs, and what they did in
+//! difference to half the step, and what storages of three times as many layers show of the error of the grid. `sigma_in` is what noise, resolution and jitter of the measured inputs, and what they did in
 //! their gaps, make of the reading: the mean square over `DRAWS` simulations with inputs drawn anew (the Monte Carlo method
 //! of GUM supplement 1; between two readings nearly as far from the straight line as those beside it are from theirs), smoothed over neighbouring samples. `sigma_0` is what the temperature of the water at
-//! the start, by as much as the first readings differ, makes of it.
+//! the start makes of it, by as much as the first readings differ beyond what the sensors' classes allow (their middle is an
+//! unknown of the fit).
 //!
 //! **Assumptions** what an input does in a gap is a bridge between the readings at its ends; its middle is as uncertain as half of
 //! the change that the input usually makes in such a time, and a third of the one it made.
@@ -13,8 +14,8 @@
 
 use crate::cores::on_all_cores;
 use crate::data::Track;
-use crate::error::ExplainError;
 use crate::experiment::Experiment;
+use crate::grid;
 use crate::sensors::Role;
 use crate::unknown::{Target, Unknown};
 use rand_distr::{Distribution, StandardNormal};
@@ -46,25 +47,37 @@ pub(crate) fn jitter_s(track: &Track) -> f64 {
 }
 
 /// Standard deviations of all samples, SI; `readings` are those of the model as it is.
-///
-/// # Errors
-/// What keeps the model from running.
-pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Result<Vec<f64>, ExplainError> {
+pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
     let starts: Vec<(Unknown, f64)> = (0..experiment.runs.len())
         .filter_map(|run| {
-            let (_, far_k) = experiment.first_k(run)?;
-            Some((Unknown::plain(Target::Initial(run), 0.0, 1.0), far_k))
+            let first = experiment.first(run)?;
+            Some((Unknown::plain(Target::Initial(run), 0.0, 1.0), first.uneven_k))
         })
         .collect();
     let (unknowns, at): (Vec<_>, Vec<_>) = starts.into_iter().unzip();
-    let others = on_all_cores(DRAWS + 2, |k| match k {
-        0 => Ok(experiment.observed(&experiment.simulated(&[], &[], 2)?, &[], &[])),
-        1 => experiment.readings(&unknowns, &at),
+    // Warmer, or where the model does not run so, colder.
+    let started = |sign: f64| {
+        let at: Vec<f64> = at.iter().map(|x| sign * x).collect();
+        experiment.readings(&unknowns, &at)
+    };
+    let others = on_all_cores(DRAWS + 3, |k| match k {
+        0 => experiment.simulated(&[], &[], 2).map(|finer| experiment.observed(&finer, &[], &[])),
+        1 => started(1.0).or_else(|_| started(-1.0)),
+        2 => grid::finer(experiment)
+            .map_or_else(|| Ok(readings.to_vec()), |finer| finer.readings(&[], &[])),
         _ => drawn(experiment, k as u64).readings(&[], &[]),
     });
-    let others: Vec<Vec<f64>> = others.into_iter().collect::<Result<_, _>>()?;
-    let away = |k: usize, i: usize| others[k][i] - readings[i];
-    let square = |i: usize| (2..DRAWS + 2).map(|k| away(k, i).powi(2)).sum::<f64>() / DRAWS as f64;
+    // What was drawn and does not run is not what was.
+    let mut others = others.into_iter().map(Result::ok);
+    let [finer, start, layers] = [(); 3].map(|()| others.next().flatten());
+    let draws: Vec<Vec<f64>> = others.flatten().collect();
+    let away = |other: &Option<Vec<f64>>, i: usize| {
+        other.as_ref().map_or(0.0, |other| other[i] - readings[i])
+    };
+    let square = |i: usize| {
+        let squares = draws.iter().map(|draw| (draw[i] - readings[i]).powi(2));
+        squares.sum::<f64>() / draws.len().max(1) as f64
+    };
     let squares: Vec<f64> = (0..readings.len()).map(square).collect();
     let samples = &experiment.samples;
     let jitters: Vec<Vec<f64>> =
@@ -82,10 +95,11 @@ pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Result<Vec<f6
         let (sum, count) =
             beside.fold((0.0, 0.0), |(sum, count), j| (sum + squares[j], count + 1.0));
         let noise = experiment.accuracy[sample.sensor].noise;
-        let rest = away(0, i).powi(2) + away(1, i).powi(2);
+        let layers = grid::WHOLE * away(&layers, i);
+        let rest = away(&finer, i).powi(2) + away(&start, i).powi(2) + layers * layers;
         (noise * noise + moved * moved + rest + sum / count).sqrt()
     });
-    Ok(sigma.collect())
+    sigma.collect()
 }
 
 /// The experiment with inputs as they might have been.
@@ -96,12 +110,31 @@ fn drawn(experiment: &Experiment, draw: u64) -> Experiment {
         for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
             if sensor.role == Role::Input {
                 let is_flow = ["kg_s", "m3_s"].contains(&sensor.si().as_str());
-                run.tracks[i] =
-                    redrawn(&run.tracks[i], experiment.accuracy[i].noise, is_flow, &mut random);
+                let (track, noise) = (&run.tracks[i], experiment.accuracy[i].noise);
+                let track =
+                    if sensor.si() == "1" { switched(track, &mut random) } else { track.clone() };
+                run.tracks[i] = redrawn(&track, noise, is_flow, &mut random);
             }
         }
     }
     other
+}
+
+/// A command, switched on and off at any moment of the intervals between its readings.
+fn switched(track: &Track, random: &mut Pcg32) -> Track {
+    let usual_s = interval_s(track);
+    let mut drawn = track.clone();
+    let is_off: Vec<bool> = track.value.iter().map(|y| *y == 0.0).collect();
+    for i in 1..is_off.len() {
+        let early: f64 = StandardNormal.sample(random);
+        if is_off[i] != is_off[i - 1] && track.time_s[i] - track.time_s[i - 1] < GAP * usual_s {
+            // Both readings beside it, by less than half of an interval: the order stays.
+            let moved_s = usual_s * (early / 12.0_f64.sqrt()).clamp(-0.45, 0.45);
+            drawn.time_s[i - 1] = track.time_s[i - 1] + moved_s;
+            drawn.time_s[i] = track.time_s[i] + moved_s;
+        }
+    }
+    drawn
 }
 
 fn redrawn(track: &Track, noise: f64, is_flow: bool, random: &mut Pcg32) -> Track {

@@ -7,7 +7,8 @@ use anergy_discrepancy::addition::{added, added_to_sensors, reverted};
 use anergy_discrepancy::data;
 use anergy_discrepancy::error::ExplainError;
 use anergy_discrepancy::experiment::Experiment;
-use anergy_discrepancy::explain::explain as compare;
+use anergy_discrepancy::explain::{compare, explain as explained};
+use anergy_discrepancy::gap::Gap;
 use anergy_discrepancy::sensors::SensorFile;
 use anergy_discrepancy::show;
 use anergy_discrepancy::split::{SplitFile, Use};
@@ -29,6 +30,9 @@ pub struct ExplainArguments {
     /// Folder for report.html, report.md, report.json and the explained model
     #[arg(long, value_name = "DIR", default_value = "results/explain")]
     out: PathBuf,
+    /// Only say how far the model is from the data; nothing is fitted
+    #[arg(long, conflicts_with = "revert")]
+    compare: bool,
     /// Take an effect that was added out of the model file, or the sensor file, again
     #[arg(long, value_name = "ID", conflicts_with_all = ["data", "sensors", "split"])]
     revert: Option<String>,
@@ -38,9 +42,7 @@ pub struct ExplainArguments {
 pub fn explain(path: &Path, wanted: &ExplainArguments) -> Result<(), Failure> {
     match (&wanted.revert, &wanted.data, &wanted.sensors) {
         (Some(id), ..) => revert(path, id),
-        (None, Some(data), Some(sensors)) => {
-            find(path, data, sensors, wanted.split.as_deref(), &wanted.out)
-        }
+        (None, Some(data), Some(sensors)) => find(path, data, sensors, wanted),
         _ => Err(Failure::Usage("--data and --sensors are needed".into())),
     }
 }
@@ -64,8 +66,7 @@ fn find(
     path: &Path,
     data: &Path,
     sensors: &Path,
-    split: Option<&Path>,
-    out: &Path,
+    wanted: &ExplainArguments,
 ) -> Result<(), Failure> {
     let (text, model) = read_model(path)?;
     let stem = path.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy());
@@ -75,9 +76,9 @@ fn find(
         stem: &stem,
         data: &read(data)?,
         sensors: &read(sensors)?,
-        split: split.map(read).transpose()?,
+        split: wanted.split.as_deref().map(read).transpose()?,
     };
-    find_in(model, &case, out)
+    if wanted.compare { compare_in(model, &case) } else { find_in(model, &case, &wanted.out) }
 }
 
 /// Texts of a comparison.
@@ -96,20 +97,40 @@ pub struct Case<'a> {
     pub split: Option<String>,
 }
 
-/// Explains, prints what was found and writes it into a folder.
-pub fn find_in(model: Model, case: &Case<'_>, out: &Path) -> Result<(), Failure> {
+/// Model, measurements and the split.
+fn experiment(model: Model, case: &Case<'_>) -> Result<(Experiment, Option<SplitFile>), Failure> {
     let sensors = SensorFile::from_toml(case.sensors).map_err(failed)?;
     let runs = data::read(case.data, &sensors).map_err(failed)?;
     let split = case.split.as_deref().map(SplitFile::from_toml).transpose().map_err(failed)?;
-    let name = model.name.clone();
     let model_failed = |error: ExplainError| match error {
         ExplainError::Model(problems) => {
             Failure::Model { problems, file: case.file.to_owned(), text: case.text.to_owned() }
         }
         other => failed(other),
     };
-    let experiment = Experiment::new(model, sensors, runs).map_err(model_failed)?;
+    Ok((Experiment::new(model, sensors, runs).map_err(model_failed)?, split))
+}
+
+/// How far the model is from the data, a line per sensor: root mean square over the samples to show.
+fn compare_in(model: Model, case: &Case<'_>) -> Result<(), Failure> {
+    let (experiment, split) = experiment(model, case)?;
     let found = compare(&experiment, split.as_ref()).map_err(failed)?;
+    for gap in found.iter().filter(|gap| of_show(gap)) {
+        let (column, unit, z) = (&gap.column, &gap.unit, gap.z_before);
+        line!("{column}: {:.6} {unit}, {z:.2} standard deviations", gap.rmse_before);
+    }
+    Ok(())
+}
+
+fn of_show(gap: &Gap) -> bool {
+    gap.part == Use::Show && gap.regime == "all"
+}
+
+/// Explains, prints what was found and writes it into a folder.
+pub fn find_in(model: Model, case: &Case<'_>, out: &Path) -> Result<(), Failure> {
+    let name = model.name.clone();
+    let (experiment, split) = experiment(model, case)?;
+    let found = explained(&experiment, split.as_ref()).map_err(failed)?;
     std::fs::create_dir_all(out).map_err(|error| Failure::file("cannot create", out, &error))?;
     let title = format!("{name}: simulation and measurement");
     let json = serde_json::to_string_pretty(&show::json(&found));
@@ -131,7 +152,7 @@ pub fn find_in(model: Model, case: &Case<'_>, out: &Path) -> Result<(), Failure>
             line!("    {id} at {component}: {words}; to tell: {}", effect.separates);
         }
     }
-    for gap in found.gaps.iter().filter(|gap| gap.part == Use::Show && gap.regime == "all") {
+    for gap in found.gaps.iter().filter(|gap| of_show(gap)) {
         let (column, unit) = (&gap.column, &gap.unit);
         line!(
             "  {column}: {:.3} -> {:.3} {unit} (root mean square, not fitted)",

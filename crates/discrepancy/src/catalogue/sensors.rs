@@ -2,7 +2,7 @@
 
 use super::Candidate;
 use crate::experiment::Experiment;
-use crate::sensors::Role;
+use crate::sensors::{Class, Role, Sensor};
 use crate::uncertainty::{interval_s, jitter_s};
 use crate::unknown::{Target, Unknown};
 
@@ -14,7 +14,18 @@ const ZERO: (f64, f64) = (0.03, 0.001);
 const FIRST_K: f64 = 0.3;
 
 /// Time constant of a sensor beyond the one that is known, s: small ones cannot be told from how a front is smeared.
-const LAG_S: f64 = 1.5;
+const LAG_S: f64 = 1.0;
+/// The time constant that is known is right to this share at most.
+const LAG: f64 = 0.2;
+
+/// The slowest that a sensor of its kind may be, s: on a wall, in a pocket, in the stream.
+fn slowest_s(sensor: &Sensor) -> f64 {
+    match (sensor.class, sensor.si().as_str()) {
+        (Class::Surface, _) => 180.0,
+        (_, "k") => 90.0,
+        _ => 60.0,
+    }
+}
 
 /// The sensors of every clock but that of the (first of the) inputs, to which all others are relative.
 fn loggers(experiment: &Experiment) -> Vec<Vec<usize>> {
@@ -39,9 +50,10 @@ fn logger_s(experiment: &Experiment, logger: &[usize]) -> f64 {
     tracks.map(interval_s).fold(0.0, f64::max) / 3.0_f64.sqrt()
 }
 
-/// Tolerance of the moment at which a sensor is read, s, beside that of its logger.
+/// Tolerance of the moment at which a sensor is read, s, beside that of its logger; what happens within a step has no moment.
 fn moment_s(experiment: &Experiment, sensor: usize) -> f64 {
-    experiment.runs.iter().map(|run| jitter_s(&run.tracks[sensor])).fold(0.0, f64::max)
+    let jitters = experiment.runs.iter().map(|run| jitter_s(&run.tracks[sensor]));
+    jitters.fold(0.0, f64::max).hypot(experiment.step.as_s() / 12.0_f64.sqrt())
 }
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
@@ -54,7 +66,8 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         }
         if experiment.sensors.sensor[i].role == Role::Compare {
             all.push(Unknown::plain(Target::Clock(i), 0.0, moment_s(experiment, i)));
-            all.push(Unknown::plain(Target::Lag(i), 0.0, LAG_S));
+            let known_s = LAG * experiment.sensors.sensor[i].lag_s / 3.0_f64.sqrt();
+            all.push(Unknown::plain(Target::Lag(i), 0.0, LAG_S.hypot(known_s)));
         }
     }
     for logger in loggers(experiment) {
@@ -62,8 +75,8 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         all.push(Unknown::plain(Target::Logger(logger[0]), 0.0, sd));
     }
     for run in 0..experiment.runs.len() {
-        if let Some((_, far_k)) = experiment.first_k(run) {
-            all.push(Unknown::plain(Target::Initial(run), 0.0, far_k.max(FIRST_K)));
+        if let Some(first) = experiment.first(run) {
+            all.push(Unknown::plain(Target::Initial(run), 0.0, first.far_k.max(FIRST_K)));
         }
     }
 }
@@ -152,7 +165,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 "S4",
                 "slow sensor",
                 ("lag_s", "s"),
-                Unknown::between(Target::Lag(i), 2.0, 180.0),
+                Unknown::between(Target::Lag(i), 2.0, slowest_s(sensor)),
                 None,
                 "two flow rates: the lag of a sensor is the same in both",
             );

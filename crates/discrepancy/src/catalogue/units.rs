@@ -9,9 +9,10 @@ const LOSS: f64 = 0.08;
 /// Tolerance of an efficiency, relative.
 const EFFICIENCY: f64 = 0.02;
 /// Of the mixing along the height of a storage, whose layers are a model of it: logarithm of its factor.
-const MIXING: f64 = 0.7;
-/// Tolerance of the time that a start takes, relative.
-const START: f64 = 0.1;
+const MIXING: f64 = 0.5;
+/// Tolerance of the time that a start takes, relative: at most 10 %.
+const START: f64 = 0.1 / ROOT3;
+const ROOT3: f64 = 1.732_050_807_568_877_2;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));

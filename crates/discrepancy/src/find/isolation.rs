@@ -119,7 +119,7 @@ impl Measured<'_> {
         };
         let held = (0..cuts.len()).min_by(|&a, &b| mean(&flows[a]).total_cmp(&mean(&flows[b])))?;
         let mut compared = Vec::new();
-        for (run, measured) in experiment.runs.iter().enumerate() {
+        for (run, measured) in self.ahead.iter().enumerate() {
             let boundary = cuts.iter().zip(&flows).enumerate().map(|(i, (node, flow))| {
                 let times_s = times(measured);
                 let water = &measured.tracks[self.t[node]];
@@ -248,7 +248,7 @@ impl Measured<'_> {
                 tests.iter().filter(|(i, _)| experiment.samples[*i].sensor == k).collect();
             let of_point = |&&(i, reading): &&(usize, f64)| {
                 let sample = &experiment.samples[i];
-                let m = -flow.at(&experiment.runs[sample.run], sample.time_s);
+                let m = -flow.at(&self.ahead[sample.run], sample.time_s);
                 (sample.run, sample.time_s, sample.value - reading, sigma[i], m, sample.value)
             };
             missing(&points.iter().map(of_point).collect::<Vec<_>>())
@@ -265,7 +265,7 @@ impl Measured<'_> {
 
     /// Whether all water that enters a node comes out of the part.
     fn leaves(&self, part: &[&str], node: &str, run: usize, time_s: f64) -> bool {
-        let run = &self.experiment.runs[run];
+        let run = &self.ahead[run];
         let model = &self.experiment.model;
         let out = self.into(part, node).map(|flow| -flow.at(run, time_s));
         let least = |flow: &Sum| {

@@ -280,7 +280,7 @@ fn with_sensors(rivals: &Rivals<'_>) -> Option<Experiment> {
     let mut runs = experiment.runs.clone();
     for (index, run) in runs.iter_mut().enumerate() {
         // Water begins at the mean of the temperatures that are read first.
-        let first_k = experiment.first_k(index).map_or(300.0, |(mean_k, _)| mean_k);
+        let first_k = experiment.first(index).map_or(300.0, |first| first.middle_k);
         let compared = run.tracks.iter().zip(known).filter(|(_, s)| s.role == Role::Compare);
         let densest = compared.max_by_key(|(track, _)| track.time_s.len())?.0.time_s.clone();
         for sensor in &sensors.sensor[known.len()..] {

@@ -122,6 +122,7 @@ mod tests {
             elpd_error: 1.0,
             strain: 1.0,
             beyond: 1.0,
+            within: false,
             validation_z: 1.1,
             reduction: 0.5,
             flags: Vec::new(),
@@ -148,6 +149,9 @@ mod tests {
             ["A", "B"]
         );
         assert!(class(&[finding("A", 1.0)], &[true], 3.0).is_empty());
+        // A drift within the class of its sensor is none.
+        let tolerated = Finding { within: true, ..finding("A", 30.0) };
+        assert!(class(&[tolerated, finding("B", 29.0)], &[true, false], 3.0).is_empty());
         // Within what the sensors promise only what is very sure counts.
         assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
         assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);

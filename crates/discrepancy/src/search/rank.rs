@@ -58,6 +58,7 @@ impl Search<'_> {
                     elpd,
                     elpd_error,
                     strain: candidate.strain(t.fit.at[place]),
+                    within: candidate.within(t.fit.at[place]),
                     beyond: (t.fit.at[place] - candidate.unknown.mean).abs() / candidate.unknown.sd,
                     validation_z: self.z(&t.fit.readings),
                     reduction: self.reduction(&null.readings, &t.fit.readings),

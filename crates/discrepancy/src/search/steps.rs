@@ -76,14 +76,14 @@ impl Search<'_> {
         self.likelihood.forget();
         self.base.clone_from(&first.base);
         self.slopes.clone_from(&first.slopes);
-        let mut rough = self.common().fits(&starts, Care::Quick)?;
+        let mut rough = self.common().fits(&starts, Care::Quick);
         rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         rough.truncate(1);
         let Some(best) = rough.first() else { return Ok(()) };
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&first.round.quick, &best.fit.readings);
         let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
-        let mut tried = self.common().fits(&again, Care::Thorough)?;
+        let mut tried = self.common().fits(&again, Care::Thorough);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
         let findings = self.ranked(&null, &mut tried);
         let single = if self.taken.is_empty() {

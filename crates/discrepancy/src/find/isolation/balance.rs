@@ -2,6 +2,7 @@
 
 use crate::data::Run;
 use crate::experiment::Experiment;
+use crate::inputs::before_lag;
 use anergy_network::elements::ElementParams;
 use anergy_simulation::model::Model;
 use anergy_simulation::model_file::NodeEntryKind;
@@ -39,6 +40,8 @@ impl Sum {
 /// The graph with what is measured of it.
 pub(super) struct Measured<'a> {
     pub(super) experiment: &'a Experiment,
+    /// The runs, in front of the known lags of their sensors.
+    pub(super) ahead: Vec<Run>,
     /// Sensor of the temperature of a node.
     pub(super) t: BTreeMap<&'a str, usize>,
     /// Flow of every edge that is known, from its a to its b.
@@ -69,7 +72,12 @@ impl<'a> Measured<'a> {
                 _ => {}
             }
         }
-        let mut measured = Self { experiment, t, flow };
+        let ahead = experiment.runs.iter().map(|run| {
+            let tracks = run.tracks.iter().zip(&experiment.sensors.sensor);
+            let tracks = tracks.map(|(track, sensor)| before_lag(track, sensor.lag_s)).collect();
+            Run { tracks, ..run.clone() }
+        });
+        let mut measured = Self { experiment, ahead: ahead.collect(), t, flow };
         measured.balance(&enters);
         measured
     }
