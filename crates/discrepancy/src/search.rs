@@ -28,7 +28,9 @@ const WINS: f64 = 4.0;
 /// as many samples also tell the layers of a model from the water of a storage.
 const WITHIN: f64 = 0.75;
 /// ... with evidence above this, nats.
-const SURE: f64 = 20.0;
+const SURE: f64 = 25.0;
+/// ... or, as a tolerance that is strained by more than this has no more evidence than half of its square, with [`STRAINS`].
+const STRAINED: f64 = 4.0;
 /// The same, where it foretells no better than strained tolerances.
 const STRAINS: f64 = 8.0;
 /// Log predictive density by which it must beat it, nats; and as many standard errors.
@@ -44,6 +46,11 @@ const NEARLY: f64 = 0.1;
 const AS_WELL: (f64, f64) = (2.0, 0.25);
 /// An effect that lies so many standard deviations from the middle of its range is no explanation.
 const BEYOND: f64 = 3.0;
+/// Odds are taken to the power of one over this for a probability ...
+const WARM: f64 = 3.0;
+/// ... of which this share belongs to causes that were tried: both so that what is stated is about how often it was right in
+/// cases of development.
+const TRIED: f64 = 0.9;
 /// Values within so many standard deviations of what is plausible are equally so.
 const PLAUSIBLE: f64 = 2.0;
 /// Sensitivities whose directions agree better than this are not told apart.
@@ -375,7 +382,8 @@ impl<'a> Search<'a> {
 
 /// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
 fn wins(f: &Finding, null_z: f64) -> bool {
-    if f.within || (null_z < WITHIN && f.evidence < SURE) {
+    let sure = f.evidence > SURE || (f.tolerated && f.strain > STRAINED && f.evidence > STRAINS);
+    if f.within || (null_z < WITHIN && !sure) {
         return false;
     }
     let (nats, errors) = FORETELLS;

@@ -4,10 +4,10 @@ use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
 
-/// Tolerance of the heat loss of a storage, relative.
-const LOSS: f64 = 0.08;
-/// Tolerance of an efficiency, relative.
-const EFFICIENCY: f64 = 0.02;
+/// Tolerance of the heat loss of a storage, relative: at most 8 %.
+const LOSS: f64 = 0.08 / ROOT3;
+/// Tolerance of an efficiency, relative: at most 2 %.
+const EFFICIENCY: f64 = 0.02 / ROOT3;
 /// Of the mixing along the height of a storage, whose layers are a model of it: logarithm of its factor.
 const MIXING: f64 = 0.5;
 /// Tolerance of the time that a start takes, relative: at most 10 %.

@@ -122,6 +122,7 @@ mod tests {
             elpd_error: 1.0,
             strain: 1.0,
             beyond: 1.0,
+            tolerated: false,
             within: false,
             validation_z: 1.1,
             reduction: 0.5,
@@ -155,6 +156,10 @@ mod tests {
         // Within what the sensors promise only what is very sure counts.
         assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
         assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);
+        // 5^2/2 = 12.5 nats are all that a tolerance strained by five standard deviations can show.
+        let strained = |strain| Finding { tolerated: true, strain, ..finding("A", 12.0) };
+        assert_eq!(ids(&class(&[strained(5.0)], &[true], 0.7)), ["A"]);
+        assert!(class(&[strained(3.5)], &[true], 0.7).is_empty());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What was tried, best first.
 
-use super::{AS_WELL, NEARLY, Search, TOGETHER, excess, prior};
+use super::{AS_WELL, NEARLY, Search, TOGETHER, TRIED, WARM, excess, prior};
 use crate::elpd;
 use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};
@@ -29,8 +29,8 @@ impl Search<'_> {
             let of = |(&k, &place): (&usize, &usize)| self.all[k].strain(t.fit.at[place]);
             t.candidates.iter().zip(&t.places).map(of).fold(0.0, f64::max)
         };
-        let over = |evidence: f64| ((evidence - best.fit.log_evidence) / loud).exp();
-        let weight = |t: &Tried| over(t.fit.log_evidence) * prior(strain(t)).exp();
+        let over = |evidence: f64| ((evidence - best.fit.log_evidence) / loud / WARM).exp();
+        let weight = |t: &Tried| over(t.fit.log_evidence) * (prior(strain(t)) / WARM).exp();
         let total = tried.iter().filter(|t| !refuted(t)).map(&weight).sum::<f64>()
             + over(null.log_evidence);
         let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
@@ -53,11 +53,12 @@ impl Search<'_> {
                     ),
                     profile: None,
                     beside: values_beside(candidate, &t.unknowns, &t.fit.at),
-                    probability: if refuted(t) { 0.0 } else { weight(t) / total },
+                    probability: if refuted(t) { 0.0 } else { TRIED * weight(t) / total },
                     evidence: t.fit.log_evidence - null.log_evidence,
                     elpd,
                     elpd_error,
                     strain: candidate.strain(t.fit.at[place]),
+                    tolerated: self.base.iter().any(|u| u.target == candidate.unknown.target),
                     within: candidate.within(t.fit.at[place]),
                     beyond: (t.fit.at[place] - candidate.unknown.mean).abs() / candidate.unknown.sd,
                     validation_z: self.z(&t.fit.readings),
