@@ -9,7 +9,6 @@ use crate::error::ExplainError;
 use crate::inputs::Input;
 use crate::response::{Response, lagged};
 use crate::sensors::{Accuracy, Role, Sensor, SensorFile};
-use crate::uncertainty::interval_s;
 use crate::unknown::{Target, Unknown};
 use anergy_core::clock::Time;
 use anergy_core::ids::ChannelId;
@@ -26,12 +25,6 @@ use std::sync::OnceLock;
 
 /// Longest lag of an input over the shortest run.
 const LONGEST_LAG: f64 = 0.25;
-
-/// A reading within so many intervals of the begin of a run tells how it began.
-const EARLY: f64 = 2.0;
-
-/// What stands in the names of temperatures that are none of water.
-const AIR: [&str; 6] = ["weather.", "ground", "soil", "room", "roof", "cellar"];
 
 /// A reading that is compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -204,40 +197,6 @@ impl Experiment {
         self.sensors.sensor[one].clock == self.sensors.sensor[other].clock
     }
 
-    /// What the temperatures of water that a run reads first say of its beginning.
-    pub fn first(&self, run: usize) -> Option<First> {
-        let (run, begin_s) = (&self.runs[run], self.runs[run].span_s.0);
-        let of_water = |k: &usize| self.is_of_water(&self.sensors.sensor[*k]);
-        let water: Vec<usize> = (0..run.tracks.len()).filter(of_water).collect();
-        // A meter that reads nothing while nothing flows reads first what came later.
-        let is_early = |k: &usize| {
-            let track = &run.tracks[*k];
-            track.time_s[0] - begin_s <= EARLY * interval_s(track)
-        };
-        let early: Vec<usize> = water.iter().copied().filter(is_early).collect();
-        let of = if early.is_empty() { water } else { early };
-        let middle_k = median(of.iter().map(|&k| run.tracks[k].value[0]))?;
-        let away = |k: &usize| (run.tracks[*k].value[0] - middle_k).abs();
-        let beyond = |k: &usize| (away(k) - 3.0_f64.sqrt() * self.accuracy[*k].bias).max(0.0);
-        let far_k = of.iter().map(away).fold(0.0, f64::max);
-        Some(First { middle_k, far_k, uneven_k: median(of.iter().map(beyond))? })
-    }
-
-    /// Whether a sensor reads the temperature of water: not of air, rooms or ground.
-    fn is_of_water(&self, sensor: &Sensor) -> bool {
-        let name = &sensor.signal;
-        let of_node = || {
-            let node = name.strip_suffix(".temperature_k");
-            node.is_some_and(|node| self.model.nodes.iter().any(|n| n.entry.id == node))
-        };
-        let of_air = || AIR.iter().any(|word| name.contains(word)) || name.ends_with("_command");
-        sensor.si() == "k"
-            && match sensor.role {
-                Role::Input => of_node(),
-                Role::Compare => !of_air(),
-            }
-    }
-
     fn with_effects(&self, unknowns: &[Unknown], at: &[f64]) -> Model {
         let mut fields: Vec<(&'static str, &str, Map<String, Value>)> = Vec::new();
         for (unknown, coordinate) in unknowns.iter().zip(at) {
@@ -378,25 +337,6 @@ impl Experiment {
     }
 }
 
-/// The water at the beginning of a run, as the temperatures that are read first say, K.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct First {
-    /// Their median: with which a simulation begins.
-    pub middle_k: f64,
-    /// How far the furthest one lies from it.
-    pub far_k: f64,
-    /// Median of how far they lie from it beyond what their classes allow.
-    pub uneven_k: f64,
-}
-
-/// The middle one, or the mean of the two in the middle.
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
-}
-
 /// Compared quantities of every run and sensor, before the sensors.
 #[derive(Debug, Clone, Default)]
 pub struct Simulated(Vec<Vec<Track>>);
@@ -405,26 +345,4 @@ pub struct Simulated(Vec<Vec<Track>>);
 fn suffix(quantity: &str) -> &str {
     let ends = |si: &&&str| quantity.strip_suffix(**si).is_some_and(|rest| rest.ends_with('_'));
     anergy_core::units::SI_SUFFIXES.iter().find(ends).copied().unwrap_or("")
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::bench;
-
-    #[test]
-    fn a_run_begins_as_its_first_readings_say() {
-        let mut experiment = bench::experiment(&[]);
-        // Inlet, middle and house begin at 47 degC; the house reads nothing until water of 62 degC has come.
-        let late = &mut experiment.runs[0].tracks[3];
-        late.time_s.drain(..250);
-        late.value.drain(..250);
-        let first = experiment.first(0).unwrap();
-        assert!((first.middle_k - 320.15).abs() < 0.2 && first.far_k < 0.2, "{first:?}");
-        // Three readings, one 8 K apart: the median counts. Within (0.15 + 0.002 * 47) K nothing is uneven; the middle one is.
-        experiment.runs[0].tracks[3].time_s[0] = 5.0;
-        experiment.runs[0].tracks[3].value[0] = 328.15;
-        let first = experiment.first(0).unwrap();
-        assert!((first.middle_k - 320.15).abs() < 0.2 && (first.far_k - 8.0).abs() < 0.2);
-        assert_eq!(first.uneven_k, 0.0, "{first:?}");
-    }
 }

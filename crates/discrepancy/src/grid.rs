@@ -7,7 +7,6 @@
 //! **Validity** models without controllers (they may name layers), storages of at most a third of the most layers there may be.
 
 use crate::experiment::Experiment;
-use anergy_prosumer::equipment::EquipmentParams;
 use anergy_simulation::model::UnitSpec;
 use serde_json::Value;
 
@@ -49,8 +48,7 @@ fn layer_of<'a>(signal: &str, storages: &'a [String]) -> Option<(&'a str, usize)
 fn refined(unit: &UnitSpec) -> Option<UnitSpec> {
     let mut value = unit.params.to_value();
     refine(&mut value);
-    let params = EquipmentParams::deserialize(unit.params.kind(), value)?.ok()?;
-    Some(UnitSpec { params, ..unit.clone() })
+    unit.with_params(value)
 }
 
 fn refine(value: &mut Value) {

@@ -5,6 +5,7 @@
 //! it found nothing.
 
 pub mod addition;
+pub mod beginning;
 #[cfg(test)]
 mod bench;
 pub mod catalogue;

@@ -3,6 +3,7 @@
 mod conclude;
 mod rank;
 mod steps;
+mod wins;
 
 use crate::catalogue::Candidate;
 use crate::error::ExplainError;
@@ -16,25 +17,13 @@ use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::unknown::Unknown;
 use nalgebra::DVector;
+use wins::{STRAINS, WINS, wins};
 
 /// The likelihood is taken to the power of one over this ...
 const TEMPERATURE: f64 = 1.0;
 /// ... or over this times the root of the nats that the best effect gains: the more there is to explain, the more the flaws of
 /// what explains it weigh. (Residuals that are not what they are taken for have been learned: [`Likelihood::learn`].)
 const LOUD: f64 = 0.125;
-/// Evidence by which an effect must beat the model without it, nats.
-const WINS: f64 = 4.0;
-/// Residuals below so many standard deviations are well within what the sensors promise: only what is very sure is named then,
-/// as many samples also tell the layers of a model from the water of a storage.
-const WITHIN: f64 = 0.75;
-/// ... with evidence above this, nats.
-const SURE: f64 = 25.0;
-/// ... or, as a tolerance that is strained by more than this has no more evidence than half of its square, with [`STRAINS`].
-const STRAINED: f64 = 4.0;
-/// The same, where it foretells no better than strained tolerances.
-const STRAINS: f64 = 8.0;
-/// Log predictive density by which it must beat it, nats; and as many standard errors.
-const FORETELLS: (f64, f64) = (4.0, 2.0);
 /// An effect that brings less than this is taken out again, nats.
 const KEEPS: f64 = 2.0;
 /// Evidence within which two effects are not told apart, nats.
@@ -55,8 +44,6 @@ const TRIED: f64 = 0.9;
 const PLAUSIBLE: f64 = 2.0;
 /// Sensitivities whose directions agree better than this are not told apart.
 const PARALLEL: f64 = 0.99;
-/// The least reduction of the error on samples that were not fitted.
-const REDUCTION: f64 = 0.02;
 /// Residuals beyond this many standard deviations (root mean square) are a discrepancy.
 pub(crate) const DIFFERS: f64 = 1.3;
 /// Without an effect that explains it, a discrepancy below this is one of the tolerances.
@@ -378,18 +365,6 @@ impl<'a> Search<'a> {
         settled.chosen = Some((tried.unknowns.clone(), tried.fit.at.clone()));
         Ok(())
     }
-}
-
-/// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
-fn wins(f: &Finding, null_z: f64) -> bool {
-    let sure = f.evidence > SURE || (f.tolerated && f.strain > STRAINED && f.evidence > STRAINS);
-    if f.within || (null_z < WITHIN && !sure) {
-        return false;
-    }
-    let (nats, errors) = FORETELLS;
-    let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
-    // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
-    f.evidence > STRAINS || (f.evidence > WINS && foretells)
 }
 
 /// Logarithm of the odds of an effect so far from what is plausible, nats.

@@ -70,6 +70,14 @@ pub struct UnitSpec {
     pub place: Place,
 }
 
+impl UnitSpec {
+    /// The same unit with other parameters of its kind, SI; none where they cannot be read.
+    pub fn with_params(&self, params: serde_json::Value) -> Option<Self> {
+        let params = EquipmentParams::deserialize(self.params.kind(), params)?.ok()?;
+        Some(Self { params, ..self.clone() })
+    }
+}
+
 /// A circuit of a house.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CircuitSpec {

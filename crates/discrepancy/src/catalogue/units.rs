@@ -136,7 +136,8 @@ fn of_storage(id: &str, all: &mut Vec<Candidate>) {
     let loss = factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby);
     all.push(loss.tolerated(0.0, LOSS));
     let idle = "hours without flow";
-    all.push(factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle));
+    let mixing = factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle);
+    all.push(mixing.tolerated(0.0, MIXING));
     all.push(Candidate::effect(
         "T3",
         id,
@@ -169,12 +170,13 @@ fn of_generator(id: &str, all: &mut Vec<Candidate>) {
         "several loads",
     );
     all.push(load.with("factor_20", part).with("factor_60", part));
-    all.push(Candidate::effect(
+    let start = Candidate::effect(
         "G3",
         id,
         "length of a start",
         ("time_factor", "1"),
         |target| Unknown::between(target, 0.3, 3.0).starting_at(1.0),
         "several starts after pauses of different length",
-    ));
+    );
+    all.push(start.tolerated(0.0, START));
 }

@@ -1,8 +1,9 @@
 //! The verdict of the first round.
 
+use super::wins::wins;
 use super::{
     BEYOND, EXPLAINED, LEAVES, NEARLY, PARALLEL, Round, Search, Settled, TOGETHER, UNEXPLAINED,
-    excess, prior, wins,
+    excess, prior,
 };
 use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;

@@ -1,6 +1,7 @@
 //! A step back, and pairs of effects that hide each other.
 
-use super::{BEYOND, EXPLAINED, First, KEEPS, PAIRS, Search, Settled, WINS, excess};
+use super::wins::{SURE, WINS, WITHIN};
+use super::{BEYOND, EXPLAINED, First, KEEPS, PAIRS, Search, Settled, excess};
 use crate::error::ExplainError;
 use crate::explain::Verdict;
 use crate::fit::{Care, fit};
@@ -91,17 +92,19 @@ impl Search<'_> {
         } else {
             Some((&with.0, &with.1))
         };
-        let rival = match single {
-            Some((unknowns, slopes)) => {
-                fit(self.experiment, unknowns, &self.likelihood, slopes, Care::Quick)?.log_evidence
-            }
-            None => null.log_evidence,
-        };
+        let single = single
+            .map(|(unknowns, slopes)| {
+                fit(self.experiment, unknowns, &self.likelihood, slopes, Care::Quick)
+            })
+            .transpose()?;
+        let rival = single.as_ref().unwrap_or(&null);
+        // What one effect leaves within what the sensors promise needs no second one that is not very sure.
+        let least = if self.z(&rival.readings) < WITHIN { SURE } else { WINS };
         let (Some(pair), [one, other, ..]) = (tried.first(), &findings[..]) else { return Ok(()) };
-        let gain = pair.fit.log_evidence - rival;
+        let gain = pair.fit.log_evidence - rival.log_evidence;
         let explained = 1.0 - excess(one.validation_z) / excess(self.z(&null.readings)).max(1e-9);
         let plausible = one.beyond.max(other.beyond) < BEYOND;
-        if gain > WINS
+        if gain > least
             && pair.fit.log_evidence - null.log_evidence > WINS
             && explained > EXPLAINED
             && plausible

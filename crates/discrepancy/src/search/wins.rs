@@ -1,0 +1,30 @@
+//! When an effect is more than what tolerances, noise and the flaws of a model would show.
+
+use crate::explain::Finding;
+
+/// Evidence by which an effect must beat the model without it, nats.
+pub(super) const WINS: f64 = 4.0;
+/// Residuals below so many standard deviations are well within what the sensors promise: only what is very sure is named then,
+/// as many samples also tell the layers of a model from the water of a storage.
+pub(super) const WITHIN: f64 = 0.75;
+/// ... with evidence above this, nats.
+pub(super) const SURE: f64 = 25.0;
+/// ... or, as a tolerance that is strained by more than this has no more evidence than half of its square, with [`STRAINS`].
+const STRAINED: f64 = 4.0;
+/// The same, where it foretells no better than strained tolerances.
+pub(super) const STRAINS: f64 = 8.0;
+/// Log predictive density by which it must beat it, nats; and as many standard errors.
+const FORETELLS: (f64, f64) = (4.0, 2.0);
+/// The least reduction of the error on samples that were not fitted.
+const REDUCTION: f64 = 0.02;
+/// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
+pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
+    let sure = f.evidence > SURE || (f.tolerated && f.strain > STRAINED && f.evidence > STRAINS);
+    if f.within || (null_z < WITHIN && !sure) {
+        return false;
+    }
+    let (nats, errors) = FORETELLS;
+    let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
+    // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
+    f.evidence > STRAINS || (f.evidence > WINS && foretells)
+}
