@@ -32,7 +32,12 @@ fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
     };
     let mut class: Vec<Finding> =
         findings.iter().zip(parallel).filter(belongs).map(|(f, _)| f.clone()).collect();
-    class.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    // One that would not win alone does not go first.
+    let order = |a: &Finding, b: &Finding| {
+        let wins = wins(b, null_z).cmp(&wins(a, null_z));
+        wins.then_with(|| weight(b).total_cmp(&weight(a)))
+    };
+    class.sort_by(order);
     class
 }
 
@@ -161,6 +166,9 @@ mod tests {
         let strained = |strain| Finding { tolerated: true, strain, ..finding("A", 12.0) };
         assert_eq!(ids(&class(&[strained(5.0)], &[true], 0.7)), ["A"]);
         assert!(class(&[strained(3.5)], &[true], 0.7).is_empty());
+        // Another one that is more plausible, but not as sure, comes second.
+        let plausible = Finding { strain: 1.0, ..finding("B", 11.5) };
+        assert_eq!(ids(&class(&[strained(5.0), plausible], &[true, false], 0.7)), ["A", "B"]);
     }
 
     #[test]
