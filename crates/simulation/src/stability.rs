@@ -10,6 +10,7 @@ mod count;
 mod flush;
 pub mod hunting;
 mod law;
+mod limit;
 mod loops;
 mod modes;
 mod periodic;

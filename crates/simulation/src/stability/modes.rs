@@ -3,12 +3,13 @@
 //! **Method** where all loops are alike but for their gains, `L = K G l(s)`, each eigenvalue of `K G` gives a
 //! scalar equation `1 + k lambda l(s) = 0`, exactly. Otherwise these equations, with l weighted by the
 //! participation of the loops in the eigenvector, and those of each loop alone give the starts for secant steps on
-//! `1/(c^H (1 + k L)^-1 b)`, which vanishes at the modes only. The number of growing modes is counted with the
+//! `1/(c^H (1 + k L)^-1 b)`, which vanishes at the modes only, with c and b that the mode of the start answers. The number of growing modes is counted with the
 //! argument principle, so that none is missed; where the count differs, modes are looked for from more
 //! starts. **Validity** poles of the controllers at zero (integrators) or in the left half plane. **Sources**
 //! `skogestad2005` (generalised Nyquist criterion).
 
 use super::count::{Case, count_growing};
+use super::limit::first_limit;
 use super::loops::Loops;
 use super::secant::secant;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -19,15 +20,14 @@ type C64 = Complex<f64>;
 const PER_DECADE: usize = 40;
 /// The same where crossings are starts only.
 const PER_DECADE_OF_STARTS: usize = 16;
-/// Modes that are refined where loops differ, and all that grow; limits that are before one is chosen.
+/// Modes that are refined where loops differ, and all that grow.
 const REFINED: usize = 8;
-const REFINED_LIMITS: usize = 3;
 /// Modes closer than this, relative, are one.
 const SAME: f64 = 1e-6;
 /// A mode that moves less than this between growing and decaying has no period.
 const NO_PERIOD: f64 = 1e-3;
 /// Steps of the scale from the limit to the present gains, each by this factor at most.
-const SCALE_STEP: f64 = 1.15;
+pub(super) const SCALE_STEP: f64 = 1.15;
 
 /// A scale at which loops of the right sign rest.
 const NO_GAIN: f64 = 1e-6;
@@ -60,14 +60,19 @@ pub(super) struct Found {
     pub growing: i64,
 }
 
+/// Shapes of what is put in and looked at: c and b of `1/(c^H (1 + k L)^-1 b)`.
+pub(super) type Probes = (DVector<C64>, DVector<C64>);
+
 /// A scalar equation `1 + k f(s) = 0`.
-struct Scalar<'a> {
+pub(super) struct Scalar<'a> {
     f: Box<dyn Fn(C64) -> C64 + 'a>,
     times: usize,
     /// Its values at the frequencies looked at.
     values: Vec<C64>,
     /// Whether crossings are wanted to the last digit.
     exact: bool,
+    /// Those that its mode answers more than the others.
+    pub(super) probes: Probes,
     /// Whether it is that of one loop with all others open.
     alone: bool,
 }
@@ -92,6 +97,7 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         of.alone.cmp(&other.alone).then(a.factor.total_cmp(&b.factor))
     });
     let mut roots: Vec<Root> = Vec::new();
+    let mut found: Vec<(C64, &Scalar)> = Vec::new();
     for (k, (limit, scalar)) in starts.iter().enumerate() {
         if !exact && k >= REFINED && counted(&roots) >= growing {
             break;
@@ -100,11 +106,10 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         if exact {
             start.into_iter().for_each(|s| keep(&mut roots, s, scalar.times));
         } else {
-            let refined = start.and_then(|start| {
-                let probe = probe(loops.len(), 0);
-                secant(|s| resolvent(loops, s, 1.0, &probe), start)
-            });
-            refined.into_iter().for_each(|s| keep(&mut roots, s, 1));
+            let answer = |s| resolvent(loops, s, 1.0, &scalar.probes);
+            let root = start.and_then(|start| secant(answer, start));
+            root.into_iter().for_each(|s| keep(&mut roots, s, 1));
+            found.extend(root.map(|s| (s, *scalar)));
         }
     }
     if counted(&roots) < growing {
@@ -119,14 +124,9 @@ pub(super) fn analyse(loops: &Loops) -> Found {
     } else if exact {
         starts.first().map(|(limit, _)| *limit)
     } else {
-        // The lowest of both kinds first.
-        let of = |alone: bool| starts.iter().filter(move |(_, scalar)| scalar.alone == alone);
-        let part = |of: &mut dyn Iterator<Item = &(Limit, &Scalar)>| -> Vec<Limit> {
-            of.map(|(limit, _)| *limit).collect()
-        };
-        let near = part(&mut of(false).take(REFINED_LIMITS).chain(of(true).take(REFINED_LIMITS)));
-        let far = part(&mut of(false).take(REFINED).skip(REFINED_LIMITS));
-        first_limit(&case, &near, &far, &omegas)
+        found.sort_by(|a, b| b.0.re.total_cmp(&a.0.re));
+        found.dedup_by(|a, b| (a.0 - b.0).norm() < SAME * b.0.norm());
+        first_limit(&case, &found, &omegas)
     };
     Found { roots, limit, growing }
 }
@@ -167,6 +167,7 @@ fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
             times,
             values: common.iter().map(|value| lambda * value).collect(),
             exact: true,
+            probes: (DVector::zeros(0), DVector::zeros(0)),
             alone: false,
         };
         return all.into_iter().map(scalar).collect();
@@ -190,15 +191,32 @@ fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
         }
         let through = |matrix: &DMatrix<C64>| left.dotc(&(matrix * &right)) / norm;
         let values = on_grid.iter().map(through).collect();
-        let (left, right) = (left.clone(), right.clone());
+        let probes = (left.clone(), right.clone());
         let f = move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm;
-        scalars.push(Scalar { f: Box::new(f), times: 1, values, exact: false, alone: false });
+        scalars.push(Scalar {
+            f: Box::new(f),
+            times: 1,
+            values,
+            exact: false,
+            probes,
+            alone: false,
+        });
     }
     // And each loop by itself: where lags differ much, modes are mostly those of one loop.
     for i in 0..n {
         let values = on_grid.iter().map(|matrix| matrix[(i, i)]).collect();
         let f = move |s: C64| loops.matrix(s)[(i, i)];
-        scalars.push(Scalar { f: Box::new(f), times: 1, values, exact: false, alone: true });
+        let mut own = DVector::zeros(n);
+        own[i] = C64::new(1.0, 0.0);
+        let probes = (own.clone(), own);
+        scalars.push(Scalar {
+            f: Box::new(f),
+            times: 1,
+            values,
+            exact: false,
+            probes,
+            alone: true,
+        });
     }
     scalars
 }
@@ -222,6 +240,11 @@ fn inverse_iteration(matrix: &DMatrix<C64>) -> DVector<C64> {
 fn probe(n: usize, seed: u32) -> DVector<C64> {
     let angle = |i: usize| (1.0 + f64::from(seed)) * 2.399_963 * (i as f64 + 0.5);
     DVector::from_fn(n, |i, _| C64::from_polar(1.0 + 0.3 * (angle(i) * 1.7).sin(), angle(i)))
+}
+
+/// Probes of no mode in particular.
+pub(super) fn general(loops: &Loops) -> Probes {
+    (probe(loops.len(), 0), probe(loops.len(), 0))
 }
 
 fn frequencies(loops: &Loops, per_decade: usize) -> Vec<f64> {
@@ -295,75 +318,12 @@ fn follow(scalar: &Scalar, limit: Limit) -> Option<C64> {
     Some(s)
 }
 
-/// `1/(b^H (1 + k L)^-1 b)`.
-fn resolvent(loops: &Loops, s: C64, factor: f64, probe: &DVector<C64>) -> C64 {
-    match loops.closed(s, factor).lu().solve(probe) {
-        Some(answer) => probe.dotc(&answer).inv(),
+/// `1/(c^H (1 + k L)^-1 b)`.
+pub(super) fn resolvent(loops: &Loops, s: C64, factor: f64, (c, b): &Probes) -> C64 {
+    match loops.closed(s, factor).lu().solve(b) {
+        Some(answer) => c.dotc(&answer).inv(),
         None => C64::new(0.0, 0.0),
     }
-}
-
-/// Newton on scale and frequency from those of a scalar equation.
-fn refine_limit(loops: &Loops, start: Limit) -> Option<Limit> {
-    let probe = probe(loops.len(), 0);
-    let f = |factor: f64, omega: f64| resolvent(loops, C64::new(0.0, omega), factor, &probe);
-    let (mut factor, mut omega) = (start.factor, start.omega_rad_s);
-    for _ in 0..30 {
-        let value = f(factor, omega);
-        let by_factor = (f(factor * (1.0 + 1e-6), omega) - value) / (1e-6 * factor);
-        let by_omega = (f(factor, omega * (1.0 + 1e-6)) - value) / (1e-6 * omega);
-        let det = by_factor.re * by_omega.im - by_factor.im * by_omega.re;
-        let d_factor = -(value.re * by_omega.im - value.im * by_omega.re) / det;
-        let d_omega = -(by_factor.re * value.im - by_factor.im * value.re) / det;
-        if !(d_factor.is_finite() && d_omega.is_finite()) {
-            return None;
-        }
-        factor *= (d_factor / factor).clamp(-0.5, 1.0) + 1.0;
-        omega *= (d_omega / omega).clamp(-0.3, 0.3) + 1.0;
-        if omega > loops.highest_rad_s() {
-            return None;
-        }
-        if d_factor.abs() < 1e-9 * factor && d_omega.abs() < 1e-9 * omega {
-            return Some(Limit { factor, omega_rad_s: omega });
-        }
-    }
-    None
-}
-
-/// The first limit below which nothing grows (there a mode stands still, so that beyond it one grows); otherwise that
-/// found by counting.
-fn first_limit(case: &Case, near: &[Limit], far: &[Limit], omegas: &[f64]) -> Option<Limit> {
-    const MARGIN: f64 = 1e-3;
-    let loops = case.loops;
-    let first = |limit: &Limit| count_growing(case, limit.factor * (1.0 - MARGIN)) == 0;
-    let mut limits: Vec<Limit> =
-        near.iter().filter_map(|start| refine_limit(loops, *start)).collect();
-    limits.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    // Starts that lead to one limit are asked once.
-    limits.dedup_by(|a, b| a.factor <= b.factor * (1.0 + MARGIN));
-    if let Some(limit) = limits.iter().find(|limit| first(limit)) {
-        return Some(*limit);
-    }
-    let mut far = far.iter().filter_map(|start| refine_limit(loops, *start));
-    if let Some(limit) = far.find(first) {
-        return Some(limit);
-    }
-    let (mut low, mut high) = (1e-6, 1e6);
-    if count_growing(case, high) == 0 {
-        return None;
-    }
-    while high / low > 1.0 + 1e-6 {
-        let middle = (low * high).sqrt();
-        if count_growing(case, middle) == 0 { low = middle } else { high = middle }
-    }
-    // The frequency is that at which the determinant comes closest to zero.
-    let size = |omega: &f64| loops.closed(C64::new(0.0, *omega), high).determinant().norm();
-    let omega = omegas.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
-    Some(
-        refine_limit(loops, Limit { factor: high, omega_rad_s: omega })
-            .filter(|refined| (refined.factor / high - 1.0).abs() < 1e-2)
-            .unwrap_or(Limit { factor: high, omega_rad_s: omega }),
-    )
 }
 
 /// Roots from many starts.
@@ -371,6 +331,7 @@ fn search(loops: &Loops, omegas: &[f64]) -> Vec<C64> {
     let mut found = Vec::new();
     for (i, &omega) in omegas.iter().enumerate().step_by(4) {
         let probe = probe(loops.len(), u32::try_from(i).unwrap_or(0));
+        let probe = (probe.clone(), probe);
         for growth in [0.3, 0.0] {
             let start = C64::new(growth * omega, omega);
             found.extend(secant(|s| resolvent(loops, s, 1.0, &probe), start));
@@ -379,6 +340,7 @@ fn search(loops: &Loops, omegas: &[f64]) -> Vec<C64> {
     // Zeros of the probe's answer only are not modes of the loops.
     let mode = |s: &C64| {
         let probe = probe(loops.len(), 987);
+        let probe = (probe.clone(), probe);
         s.re > -s.im.abs() && resolvent(loops, *s, 1.0, &probe).norm() < 1e-6
     };
     found.into_iter().filter(mode).collect()
