@@ -90,7 +90,6 @@ impl Chain {
 
 impl SampledChain {
     /// The answer to a held command at a value of z.
-    #[cfg(test)]
     pub fn at(&self, z: C64) -> C64 {
         self.through(&self.ahead(z), self.behind(z), self.late(z))
     }
@@ -173,17 +172,10 @@ impl Chains {
         if self.interval_s > 0.0 { (s * self.interval_s).exp() } else { s }
     }
 
-    /// The answers of all measured values (rows) to commands at a complex frequency.
-    pub fn at(&self, s: C64) -> DMatrix<C64> {
-        let kinds = self.kinds_at(s);
-        DMatrix::from_fn(self.sensor_of.len(), self.actuator_of.len(), |i, j| {
-            kinds[(self.sensor_of[i], self.actuator_of[j])]
-        })
-    }
-
-    /// The same of each kind of sensor and actuator.
-    pub fn kinds_at(&self, s: C64) -> DMatrix<C64> {
+    /// The answers of all measured values (rows) to all commands at a complex frequency, with their gains.
+    pub fn plant(&self, s: C64, gains: &DMatrix<f64>) -> DMatrix<C64> {
         let (n, z) = (self.actuator_lags_s.len(), self.variable(s));
+        let (of, to) = (&self.sensor_of, &self.actuator_of);
         if self.sampled.is_empty() {
             let ahead: Vec<C64> =
                 self.actuator_lags_s.iter().map(|lag| Chain::new(*lag, 0.0, 0.0).at(s)).collect();
@@ -192,14 +184,23 @@ impl Chains {
                 .iter()
                 .map(|seen| Chain::new(0.0, seen.lag_s, seen.dead_s).at(s))
                 .collect();
-            DMatrix::from_fn(behind.len(), n, |i, j| behind[i] * ahead[j])
-        } else {
-            let ahead: Vec<_> = self.sampled[..n].iter().map(|chain| chain.ahead(z)).collect();
-            let first = self.sampled.iter().step_by(n);
-            let behind: Vec<_> = first.map(|chain| (chain.behind(z), chain.late(z))).collect();
-            DMatrix::from_fn(behind.len(), n, |i, j| {
-                self.sampled[i * n + j].through(&ahead[j], behind[i].0, behind[i].1)
-            })
+            return gains.map_with_location(|i, j, gain| behind[of[i]] * (ahead[to[j]] * gain));
+        }
+        let ahead: Vec<_> = self.sampled[..n].iter().map(|chain| chain.ahead(z)).collect();
+        let first = self.sampled.iter().step_by(n);
+        let behind: Vec<_> = first.map(|chain| (chain.behind(z), chain.late(z))).collect();
+        gains.map_with_location(|i, j, gain| {
+            let (behind, late) = behind[of[i]];
+            self.sampled[of[i] * n + to[j]].through(&ahead[to[j]], behind, late) * gain
+        })
+    }
+
+    /// The answer of one value to one command.
+    pub fn one(&self, i: usize, j: usize, s: C64) -> C64 {
+        let n = self.actuator_lags_s.len();
+        match self.sampled.get(self.sensor_of[i] * n + self.actuator_of[j]) {
+            Some(sampled) => sampled.at(self.variable(s)),
+            None => self.continuous(i, j, s),
         }
     }
 
@@ -276,7 +277,8 @@ mod tests {
         let lags_s = [1.5, 0.0, 0.6];
         let s = Complex::new(-0.02, 0.9);
         for interval_s in [0.0, 0.5] {
-            let all = Chains::new(&lags_s, &seen, interval_s).at(s);
+            let chains = Chains::new(&lags_s, &seen, interval_s);
+            let all = chains.plant(s, &DMatrix::from_element(4, 3, 1.0));
             for (i, seen) in seen.iter().enumerate() {
                 for (j, lag_s) in lags_s.iter().enumerate() {
                     let chain = Chain::new(*lag_s, seen.lag_s, seen.dead_s);
@@ -285,6 +287,7 @@ mod tests {
                         h => chain.sampled(h).at((s * h).exp()),
                     };
                     assert!((all[(i, j)] - alone).norm() < 1e-13);
+                    assert!((chains.one(i, j, s) - alone).norm() < 1e-13);
                 }
             }
         }

@@ -6,7 +6,7 @@
 
 use super::count::{Case, count_growing};
 use super::loops::Loops;
-use super::modes::{Limit, Probes, SCALE_STEP, Scalar, general, resolvent};
+use super::modes::{Limit, Probes, SAME, SCALE_STEP, general, resolvent, swings};
 use super::secant::secant;
 use nalgebra::Complex;
 
@@ -43,29 +43,33 @@ fn refine_limit(loops: &Loops, start: Limit, probes: &Probes) -> Option<Limit> {
 }
 
 /// Where a mode stops decaying: followed from the present gains to the axis.
-fn to_axis(loops: &Loops, (root, scalar): &(C64, &Scalar)) -> Option<Limit> {
+fn to_axis(loops: &Loops, (root, probes): &(C64, Probes)) -> Option<Limit> {
     let (mut s, mut factor) = (*root, 1.0);
     let step = if s.re > 0.0 { 1.0 / SCALE_STEP } else { SCALE_STEP };
     for _ in 0..MOST_SCALES {
         if (s.re > 0.0) != (root.re > 0.0) {
-            return refine_limit(loops, Limit { factor, omega_rad_s: s.im.abs() }, &scalar.probes);
+            return refine_limit(loops, Limit { factor, omega_rad_s: s.im.abs() }, probes);
         }
         factor *= step;
-        s = secant(|s| resolvent(loops, s, factor, &scalar.probes), s)?;
+        s = secant(|s| resolvent(loops, s, factor, probes), s)?;
     }
     None
 }
 
 /// The first limit below which nothing grows (there a mode stands still, so that beyond it one grows), of the modes that
-/// grow most; otherwise that found by counting.
-pub(super) fn first_limit(case: &Case, found: &[(C64, &Scalar)], omegas: &[f64]) -> Option<Limit> {
+/// grow most.
+pub(super) fn limit_of_modes(case: &Case, mut found: Vec<(C64, Probes)>) -> Option<Limit> {
     const MARGIN: f64 = 1e-3;
-    let loops = case.loops;
-    let mut limits = found.iter().take(LIMITS).filter_map(|mode| to_axis(loops, mode));
+    found.retain(|(s, _)| swings(*s));
+    found.sort_by(|a, b| b.0.re.total_cmp(&a.0.re));
+    found.dedup_by(|a, b| (a.0 - b.0).norm() < SAME * b.0.norm());
     let first = |limit: &Limit| count_growing(case, limit.factor * (1.0 - MARGIN)) == 0;
-    if let Some(limit) = limits.find(first) {
-        return Some(limit);
-    }
+    found.iter().take(LIMITS).filter_map(|mode| to_axis(case.loops, mode)).find(first)
+}
+
+/// The limit by bisection, where no mode leads to it.
+pub(super) fn limit_by_counting(case: &Case, omegas: &[f64]) -> Option<Limit> {
+    let loops = case.loops;
     let (mut low, mut high) = (1e-6, 1e6);
     if count_growing(case, high) == 0 {
         return None;

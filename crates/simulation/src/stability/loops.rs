@@ -71,42 +71,68 @@ impl Loops {
 
     /// The law and chain that all loops have where they are uniform, without gains.
     pub fn common(&self, s: Complex<f64>) -> Complex<f64> {
-        -self.laws[0].transfer(self.chains.variable(s))[(0, 0)] * self.chains.kinds_at(s)[(0, 0)]
+        -self.laws[0].transfer(self.chains.variable(s))[(0, 0)] * self.chains.one(0, 0, s)
     }
 
     /// `L(s)`.
     pub fn matrix(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
         let n = self.len();
-        let mut plant = self.chains.at(s);
-        plant.zip_apply(&self.gains, |chain, gain| *chain *= gain);
+        let mut plant = self.chains.plant(s, &self.gains);
         for (i, j, response) in &self.slow {
-            // Between two samples the command is held: late by half of the interval.
-            let x = s * self.interval_s;
-            let hold =
-                if x.norm() < 1e-8 { Complex::new(1.0, 0.0) } else { (1.0 - (-x).exp()) / x };
-            plant[(*i, *j)] = self.chains.continuous(*i, *j, s) * hold * response.at(s);
+            plant[(*i, *j)] = self.slow_answer(*i, *j, response, s);
         }
         let variable = self.chains.variable(s);
-        let (mut row, mut seen) = (0, 0);
-        // Output, measured value, and what the controller makes of it.
-        let mut entries = Vec::with_capacity(n);
-        for law in &self.laws {
-            let transfer = law.transfer(variable);
-            for i in 0..transfer.nrows() {
-                for k in 0..transfer.ncols() {
-                    entries.push((row + i, seen + k, -transfer[(i, k)]));
-                }
+        if self.laws.iter().all(|law| law.c.nrows() == 1 && law.b.ncols() == 1) {
+            let laws: Vec<_> =
+                self.laws.iter().map(|law| -law.transfer(variable)[(0, 0)]).collect();
+            for mut column in plant.column_iter_mut() {
+                column.iter_mut().zip(&laws).for_each(|(entry, law)| *entry *= law);
             }
-            row += transfer.nrows();
-            seen += transfer.ncols();
+            return plant;
         }
+        let (mut row, mut seen) = (0, 0);
         let mut matrix = DMatrix::zeros(n, n);
-        for j in 0..n {
-            for (output, value, entry) in &entries {
-                matrix[(*output, j)] += entry * plant[(*value, j)];
-            }
+        for law in &self.laws {
+            let transfer = -law.transfer(variable);
+            let (n_out, n_in) = transfer.shape();
+            let through = transfer * plant.rows(seen, n_in);
+            matrix.rows_mut(row, n_out).copy_from(&through);
+            row += n_out;
+            seen += n_in;
         }
         matrix
+    }
+
+    /// `L_ii(s)`: the loop of one output with all others open.
+    pub fn own(&self, i: usize, s: Complex<f64>) -> Complex<f64> {
+        let law = self.owner[i];
+        let before = &self.laws[..law];
+        let first: usize = before.iter().map(|law| law.c.nrows()).sum();
+        let seen: usize = before.iter().map(|law| law.b.ncols()).sum();
+        let transfer = self.laws[law].transfer(self.chains.variable(s));
+        let answer = |value: usize| {
+            let slow = self.slow.iter().find(|(of, to, _)| (*of, *to) == (value, i));
+            match slow {
+                Some((_, _, response)) => self.slow_answer(value, i, response, s),
+                None => self.chains.one(value, i, s) * self.gains[(value, i)],
+            }
+        };
+        let row = transfer.row(i - first);
+        -row.iter().enumerate().map(|(k, entry)| entry * answer(seen + k)).sum::<Complex<f64>>()
+    }
+
+    /// A response in which temperatures take part, with its chain.
+    fn slow_answer(
+        &self,
+        i: usize,
+        j: usize,
+        response: &StepResponse,
+        s: Complex<f64>,
+    ) -> Complex<f64> {
+        // Between two samples the command is held: late by half of the interval.
+        let x = s * self.interval_s;
+        let hold = if x.norm() < 1e-8 { Complex::new(1.0, 0.0) } else { (1.0 - (-x).exp()) / x };
+        self.chains.continuous(i, j, s) * hold * response.at(s)
     }
 
     /// `1 + k L(s)`.

@@ -1,15 +1,15 @@
 //! Modes of closed loops and the scale of all gains at which the first of them stops decaying.
 //!
 //! **Method** where all loops are alike but for their gains, `L = K G l(s)`, each eigenvalue of `K G` gives a
-//! scalar equation `1 + k lambda l(s) = 0`, exactly. Otherwise these equations, with l weighted by the
-//! participation of the loops in the eigenvector, and those of each loop alone give the starts for secant steps on
-//! `1/(c^H (1 + k L)^-1 b)`, which vanishes at the modes only, with c and b that the mode of the start answers. The number of growing modes is counted with the
-//! argument principle, so that none is missed; where the count differs, modes are looked for from more
-//! starts. **Validity** poles of the controllers at zero (integrators) or in the left half plane. **Sources**
-//! `skogestad2005` (generalised Nyquist criterion).
+//! scalar equation `1 + k lambda l(s) = 0`, exactly. Otherwise the same equation of each loop with all others open gives
+//! the start for secant steps on `1/(c^H (1 + k L)^-1 b)`, which vanishes at the modes only, with c and b that the mode of
+//! the start answers more than others; where modes are missing, l is weighted by the participation of the loops in
+//! the eigenvectors. The number of growing modes is counted with the argument principle, so that none is missed; where
+//! the count differs still, modes are looked for from many starts. **Validity** poles of the controllers at zero
+//! (integrators) or in the left half plane. **Sources** `skogestad2005` (generalised Nyquist criterion).
 
 use super::count::{Case, count_growing};
-use super::limit::first_limit;
+use super::limit::{limit_by_counting, limit_of_modes};
 use super::loops::Loops;
 use super::secant::secant;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -23,7 +23,7 @@ const PER_DECADE_OF_STARTS: usize = 16;
 /// Modes that are refined where loops differ, and all that grow.
 const REFINED: usize = 8;
 /// Modes closer than this, relative, are one.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 /// A mode that moves less than this between growing and decaying has no period.
 const NO_PERIOD: f64 = 1e-3;
 /// Steps of the scale from the limit to the present gains, each by this factor at most.
@@ -64,7 +64,7 @@ pub(super) struct Found {
 pub(super) type Probes = (DVector<C64>, DVector<C64>);
 
 /// A scalar equation `1 + k f(s) = 0`.
-pub(super) struct Scalar<'a> {
+struct Scalar<'a> {
     f: Box<dyn Fn(C64) -> C64 + 'a>,
     times: usize,
     /// Its values at the frequencies looked at.
@@ -72,9 +72,7 @@ pub(super) struct Scalar<'a> {
     /// Whether crossings are wanted to the last digit.
     exact: bool,
     /// Those that its mode answers more than the others.
-    pub(super) probes: Probes,
-    /// Whether it is that of one loop with all others open.
-    alone: bool,
+    probes: Probes,
 }
 
 /// Analyses a group of loops.
@@ -85,50 +83,91 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         scaled.complex_eigenvalues().iter().copied().collect()
     });
     let case = Case { loops, lambdas };
-    let exact = case.lambdas.is_some();
     let growing = count_growing(&case, 1.0);
-    let omegas = frequencies(loops, if exact { PER_DECADE } else { PER_DECADE_OF_STARTS });
-    let scalars = scalars(&case, &omegas);
-    let mut starts: Vec<(Limit, &Scalar)> = Vec::new();
-    for scalar in &scalars {
-        starts.extend(crossing(scalar, &omegas).map(|limit| (limit, scalar)));
+    // What grows with hardly any gain has the wrong sign.
+    let wrong = count_growing(&case, NO_GAIN) > 0;
+    let (mut roots, limit) = match &case.lambdas {
+        Some(lambdas) => exact(loops, lambdas, growing),
+        None => sought(&case, growing, !wrong),
+    };
+    roots.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
+    let limit = if wrong { Some(Limit { factor: 0.0, omega_rad_s: 0.0 }) } else { limit };
+    Found { roots, limit, growing }
+}
+
+/// Modes and limit of uniform loops with the eigenvalues of their gains.
+fn exact(loops: &Loops, lambdas: &[C64], growing: i64) -> (Vec<Root>, Option<Limit>) {
+    let omegas = frequencies(loops, PER_DECADE);
+    let scalars = uniform(loops, lambdas, &omegas);
+    let starts = starts(&scalars, &omegas);
+    let mut roots = Vec::new();
+    for (limit, scalar) in &starts {
+        let root = follow(scalar, *limit);
+        root.into_iter().for_each(|s| keep(&mut roots, s, scalar.times));
     }
-    starts.sort_by(|(a, of), (b, other)| {
-        of.alone.cmp(&other.alone).then(a.factor.total_cmp(&b.factor))
-    });
-    let mut roots: Vec<Root> = Vec::new();
-    let mut found: Vec<(C64, &Scalar)> = Vec::new();
-    for (k, (limit, scalar)) in starts.iter().enumerate() {
-        if !exact && k >= REFINED && counted(&roots) >= growing {
+    look_further(loops, growing, &mut roots);
+    (roots, starts.first().map(|(limit, _)| *limit))
+}
+
+/// Modes of other loops, and their limit where there can be one.
+fn sought(case: &Case, growing: i64, limited: bool) -> (Vec<Root>, Option<Limit>) {
+    let loops = case.loops;
+    let omegas = frequencies(loops, PER_DECADE_OF_STARTS);
+    let mut roots = Vec::new();
+    let mut found = refined(loops, &alone(loops, &omegas), &omegas, growing, &mut roots);
+    // Loops that are nearly alike have modes of all of them together.
+    let few = counted(&roots) < growing || roots.len() < REFINED.min(loops.len());
+    if few {
+        found.extend(refined(loops, &together(loops, &omegas), &omegas, growing, &mut roots));
+    }
+    look_further(loops, growing, &mut roots);
+    let mut limit = if limited { limit_of_modes(case, found) } else { None };
+    if limited && limit.is_none() && !few {
+        let more = refined(loops, &together(loops, &omegas), &omegas, growing, &mut roots);
+        limit = limit_of_modes(case, more);
+    }
+    if limited && limit.is_none() {
+        limit = limit_by_counting(case, &omegas);
+    }
+    (roots, limit)
+}
+
+/// Where the scalar equations have their smallest scale, the smallest first.
+fn starts<'a>(scalars: &'a [Scalar<'a>], omegas: &[f64]) -> Vec<(Limit, &'a Scalar<'a>)> {
+    let start = |scalar: &'a Scalar<'a>| Some((crossing(scalar, omegas)?, scalar));
+    let mut starts: Vec<_> = scalars.iter().filter_map(start).collect();
+    starts.sort_by(|a, b| a.0.factor.total_cmp(&b.0.factor));
+    starts
+}
+
+/// Modes from the starts of scalar equations, with the probes of each; all that grow, and some more.
+fn refined(
+    loops: &Loops,
+    scalars: &[Scalar],
+    omegas: &[f64],
+    growing: i64,
+    roots: &mut Vec<Root>,
+) -> Vec<(C64, Probes)> {
+    let mut found = Vec::new();
+    for (k, (limit, scalar)) in starts(scalars, omegas).into_iter().enumerate() {
+        if k >= REFINED && counted(roots) >= growing {
             break;
         }
-        let start = follow(scalar, *limit);
-        if exact {
-            start.into_iter().for_each(|s| keep(&mut roots, s, scalar.times));
-        } else {
-            let answer = |s| resolvent(loops, s, 1.0, &scalar.probes);
-            let root = start.and_then(|start| secant(answer, start));
-            root.into_iter().for_each(|s| keep(&mut roots, s, 1));
-            found.extend(root.map(|s| (s, *scalar)));
+        let answer = |s| resolvent(loops, s, 1.0, &scalar.probes);
+        if let Some(s) = follow(scalar, limit).and_then(|start| secant(answer, start)) {
+            keep(roots, s, 1);
+            found.push((s, scalar.probes.clone()));
         }
     }
-    if counted(&roots) < growing {
-        for s in search(loops, &frequencies(loops, PER_DECADE)) {
-            keep(&mut roots, s, 1);
-        }
+    found
+}
+
+/// Looks from many starts where growing modes are still missing.
+fn look_further(loops: &Loops, growing: i64, roots: &mut Vec<Root>) {
+    if counted(roots) < growing {
+        let found = search(loops, &frequencies(loops, PER_DECADE));
+        found.into_iter().for_each(|s| keep(roots, s, 1));
     }
-    roots.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
-    // What grows with hardly any gain has the wrong sign.
-    let limit = if count_growing(&case, NO_GAIN) > 0 {
-        Some(Limit { factor: 0.0, omega_rad_s: 0.0 })
-    } else if exact {
-        starts.first().map(|(limit, _)| *limit)
-    } else {
-        found.sort_by(|a, b| b.0.re.total_cmp(&a.0.re));
-        found.dedup_by(|a, b| (a.0 - b.0).norm() < SAME * b.0.norm());
-        first_limit(&case, &found, &omegas)
-    };
-    Found { roots, limit, growing }
 }
 
 /// Growing modes among the roots.
@@ -137,9 +176,14 @@ fn counted(roots: &[Root]) -> i64 {
     i64::try_from(pairs.sum::<usize>()).unwrap_or(i64::MAX)
 }
 
+/// Whether it swings.
+pub(super) fn swings(s: C64) -> bool {
+    s.im.abs() >= NO_PERIOD * s.re.abs() && s.re.is_finite()
+}
+
 fn keep(roots: &mut Vec<Root>, s: C64, times: usize) {
     let s = C64::new(s.re, s.im.abs());
-    if s.im < NO_PERIOD * s.re.abs() || !s.re.is_finite() {
+    if !swings(s) {
         return;
     }
     match roots.iter_mut().find(|known| (known.s - s).norm() < SAME * s.norm()) {
@@ -148,31 +192,41 @@ fn keep(roots: &mut Vec<Root>, s: C64, times: usize) {
     }
 }
 
-/// The scalar equations: exact for uniform loops, otherwise starts.
-fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
-    let loops = case.loops;
-    let n = loops.len();
-    if let Some(lambdas) = &case.lambdas {
-        let mut all: Vec<(C64, usize)> = Vec::new();
-        for lambda in lambdas.iter().filter(|lambda| lambda.im >= 0.0 && lambda.norm() > 0.0) {
-            match all.iter_mut().find(|(known, _)| (known - lambda).norm() < SAME * lambda.norm()) {
-                Some((_, times)) => *times += 1,
-                None => all.push((*lambda, 1)),
-            }
+/// The scalar equations of uniform loops, exact: one for each eigenvalue.
+fn uniform<'a>(loops: &'a Loops, lambdas: &[C64], omegas: &[f64]) -> Vec<Scalar<'a>> {
+    let mut all: Vec<(C64, usize)> = Vec::new();
+    for lambda in lambdas.iter().filter(|lambda| lambda.im >= 0.0 && lambda.norm() > 0.0) {
+        match all.iter_mut().find(|(known, _)| (known - lambda).norm() < SAME * lambda.norm()) {
+            Some((_, times)) => *times += 1,
+            None => all.push((*lambda, 1)),
         }
-        let common: Vec<C64> =
-            omegas.iter().map(|omega| loops.common(C64::new(0.0, *omega))).collect();
-        let scalar = |(lambda, times): (C64, usize)| Scalar {
-            f: Box::new(move |s| lambda * loops.common(s)),
-            times,
-            values: common.iter().map(|value| lambda * value).collect(),
-            exact: true,
-            probes: (DVector::zeros(0), DVector::zeros(0)),
-            alone: false,
-        };
-        return all.into_iter().map(scalar).collect();
     }
-    // The eigenvectors at the frequency of the chains, each with the loops that take part.
+    let common: Vec<C64> = omegas.iter().map(|omega| loops.common(C64::new(0.0, *omega))).collect();
+    let scalar = |(lambda, times): (C64, usize)| Scalar {
+        f: Box::new(move |s| lambda * loops.common(s)),
+        times,
+        values: common.iter().map(|value| lambda * value).collect(),
+        exact: true,
+        probes: (DVector::zeros(0), DVector::zeros(0)),
+    };
+    all.into_iter().map(scalar).collect()
+}
+
+/// Each loop with all others open: where lags differ much, modes are mostly those of one loop.
+fn alone<'a>(loops: &'a Loops, omegas: &[f64]) -> Vec<Scalar<'a>> {
+    let scalar = |i: usize| {
+        let mut own = DVector::zeros(loops.len());
+        own[i] = C64::new(1.0, 0.0);
+        let values = omegas.iter().map(|omega| loops.own(i, C64::new(0.0, *omega))).collect();
+        let f = Box::new(move |s: C64| loops.own(i, s));
+        Scalar { f, times: 1, values, exact: false, probes: (own.clone(), own) }
+    };
+    (0..loops.len()).map(scalar).collect()
+}
+
+/// The loops as they take part in the eigenvectors at the frequency of the chains.
+fn together<'a>(loops: &'a Loops, omegas: &[f64]) -> Vec<Scalar<'a>> {
+    let n = loops.len();
     let (_, slowest) = loops.times_s();
     let at = C64::new(0.0, 2.0 / slowest);
     let matrix = loops.matrix(at);
@@ -192,31 +246,8 @@ fn scalars<'a>(case: &'a Case, omegas: &[f64]) -> Vec<Scalar<'a>> {
         let through = |matrix: &DMatrix<C64>| left.dotc(&(matrix * &right)) / norm;
         let values = on_grid.iter().map(through).collect();
         let probes = (left.clone(), right.clone());
-        let f = move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm;
-        scalars.push(Scalar {
-            f: Box::new(f),
-            times: 1,
-            values,
-            exact: false,
-            probes,
-            alone: false,
-        });
-    }
-    // And each loop by itself: where lags differ much, modes are mostly those of one loop.
-    for i in 0..n {
-        let values = on_grid.iter().map(|matrix| matrix[(i, i)]).collect();
-        let f = move |s: C64| loops.matrix(s)[(i, i)];
-        let mut own = DVector::zeros(n);
-        own[i] = C64::new(1.0, 0.0);
-        let probes = (own.clone(), own);
-        scalars.push(Scalar {
-            f: Box::new(f),
-            times: 1,
-            values,
-            exact: false,
-            probes,
-            alone: true,
-        });
+        let f = Box::new(move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm);
+        scalars.push(Scalar { f, times: 1, values, exact: false, probes });
     }
     scalars
 }
