@@ -323,7 +323,7 @@ fn compare(data: &Path, test: &str, all: bool) -> Vec<String> {
     }
     leave_curves(test, &sensors, &measured, &runs, &times_s);
     if all {
-        let command = "RSE_TESTS=all cargo test --release --workspace --test heat rse_facility::";
+        let command = "RSE_TESTS=all cargo test --workspace --test heat rse_facility::";
         write_table("rse_facility", test, command, &table);
     } else {
         println!("{table}");
