@@ -151,6 +151,11 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
+    /// Begins now.
+    pub(crate) fn new() -> Self {
+        Self { begun: Instant::now(), times: Vec::new() }
+    }
+
     /// The time since the last call belongs to this part.
     pub(crate) fn lap(&mut self, part: &'static str) {
         let took = self.begun.elapsed().as_secs_f64();
@@ -170,7 +175,7 @@ pub fn explain(
     experiment: &Experiment,
     split_file: Option<&SplitFile>,
 ) -> Result<Explanation, ExplainError> {
-    let mut watch = Stopwatch { begun: Instant::now(), times: Vec::new() };
+    let mut watch = Stopwatch::new();
     let problems = sanity::of_data(experiment);
     if !problems.is_empty() {
         return Ok(data_problem(problems));

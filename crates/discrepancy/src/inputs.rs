@@ -174,4 +174,35 @@ mod tests {
         let halves = input.driver((0.0, 9.0), Time::from_s(0.25).unwrap(), 36);
         assert!(halves.values.iter().all(|v| [0.0, 1.0].contains(v)), "{:?}", halves.values);
     }
+
+    #[test]
+    fn a_step_takes_what_was_in_front_of_the_sensor() {
+        use crate::unknown::Target;
+        let text = "[[sensor]]\ncolumn = \"m\"\nsignal = \"a.m_flow_kg_s\"\nunit = \"kg_s\"\nrole = \"input\"\n\
+                    [[sensor]]\ncolumn = \"T\"\nsignal = \"b.t_k\"\nunit = \"degC\"\nrole = \"compare\"\n";
+        let file = SensorFile::from_toml(text).unwrap();
+        let sensor = &file.sensor[0];
+        // It reads 10 % and 0.1 kg/s too much, 2 s early: y(t) = 1.1 x(t + 2) + 0.1.
+        let mut response = Response::default();
+        for (flaw, value) in
+            [(Target::Gain(0), 1.1), (Target::Bias(0), 0.1), (Target::Clock(0), 2.0)]
+        {
+            response.take(&flaw, value);
+        }
+        let rising = track(30, |t| 1.0 + 0.01 * t);
+        let range = (0.0, f64::INFINITY);
+        let input = Input { sensor, track: &rising, response: &response, range, noise: 0.0 };
+        let driver = input.driver((0.0, 29.0), Time::from_s(2.0).unwrap(), 14);
+        // Fifth step, 8 to 10 s, its middle 9 s: read at 7 s, 1.07; (1.07 - 0.1)/1.1 = 0.8818.
+        assert!((driver.values[5] - 0.881_818).abs() < 1e-6, "{}", driver.values[5]);
+        // A meter that reads nothing has cut off: its offset does not flow.
+        let still = track(30, |_| 0.0);
+        let input = Input { track: &still, ..input };
+        let driver = input.driver((0.0, 29.0), Time::from_s(2.0).unwrap(), 14);
+        assert!(driver.values.iter().all(|m| *m == 0.0), "{:?}", driver.values);
+        // What reads too much never drives backwards: (0.05 - 0.1)/1.1 < 0.
+        let little = track(30, |_| 0.05);
+        let input = Input { track: &little, ..input };
+        assert_eq!(input.driver((0.0, 29.0), Time::from_s(2.0).unwrap(), 14).values[5], 0.0);
+    }
 }

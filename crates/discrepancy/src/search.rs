@@ -85,6 +85,22 @@ pub(crate) struct Settled {
 }
 
 impl Settled {
+    /// Before anything was tried.
+    fn nothing() -> Self {
+        Self {
+            verdict: Verdict::Nothing,
+            because: String::new(),
+            taken: Vec::new(),
+            effects: Vec::new(),
+            class: Vec::new(),
+            tried: Vec::new(),
+            null_readings: Vec::new(),
+            additions: Vec::new(),
+            null: (Vec::new(), Vec::new()),
+            chosen: None,
+        }
+    }
+
     /// Every unknown of the last fit, without an effect of that of the tolerances: its name, value, and distance from the middle of its range in standard deviations.
     pub(crate) fn strained(&self) -> Vec<(String, f64, f64)> {
         let of =
@@ -141,18 +157,7 @@ impl<'a> Search<'a> {
     }
 
     pub(crate) fn run(&mut self, watch: &mut Stopwatch) -> Result<Settled, ExplainError> {
-        let mut settled = Settled {
-            verdict: Verdict::Nothing,
-            because: String::new(),
-            taken: Vec::new(),
-            effects: Vec::new(),
-            class: Vec::new(),
-            tried: Vec::new(),
-            null_readings: Vec::new(),
-            additions: Vec::new(),
-            null: (Vec::new(), Vec::new()),
-            chosen: None,
-        };
+        let mut settled = Settled::nothing();
         let mut first: Option<First> = None;
         while self.taken.len() < MOST_EFFECTS {
             let is_first = self.taken.is_empty();
@@ -375,4 +380,107 @@ fn prior(strain: f64) -> f64 {
 /// Squared residuals beyond those that noise explains.
 fn excess(z: f64) -> f64 {
     (z * z - 1.0).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+    use crate::catalogue::{candidates, effect_target, tolerances};
+
+    fn loss(pipe: &str, factor: f64) -> (Unknown, f64) {
+        (Unknown::plain(effect_target("P2", pipe, "factor"), 1.0, 1.0), factor)
+    }
+
+    /// What is tried on the bench: wrong insulation of both pipes.
+    fn insulations(experiment: &Experiment) -> Vec<Candidate> {
+        let mut all = candidates(experiment);
+        all.retain(|candidate| candidate.id == "P2");
+        assert_eq!(all.iter().map(|c| c.component.as_str()).collect::<Vec<_>>(), ["near", "far"]);
+        all
+    }
+
+    fn search<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> Search<'a> {
+        let n = experiment.samples.len();
+        let likelihood = Likelihood::new(vec![0.05; n], (0..n).collect());
+        Search::new(experiment, all, tolerances(experiment), likelihood, (0..n).collect())
+    }
+
+    /// A search that has taken both candidates, one after the other.
+    fn with_both<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> (Search<'a>, Settled) {
+        let (mut search, mut settled) = (search(experiment, all), Settled::nothing());
+        for k in 0..2 {
+            let start = Start { candidates: vec![k], at: vec![0.0], earlier: None };
+            let mut tried = search.common().fits(&[start], Care::Quick);
+            let null =
+                fit(experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
+            let findings = search.ranked(&null.unwrap(), &mut tried);
+            search.take(&tried[0], &findings, &mut settled).unwrap();
+        }
+        (search, settled)
+    }
+
+    #[test]
+    fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
+        let only_far = bench::experiment(&[loss("far", 3.0)]);
+        let all = insulations(&only_far);
+        let (mut search, mut settled) = with_both(&only_far, &all);
+        search.step_back(&mut settled).unwrap();
+        assert_eq!(search.taken, [1]);
+        assert_eq!((settled.effects.len(), settled.effects[0].component.as_str()), (1, "far"));
+        // Its insulation is a tolerance again.
+        let near = search.base.iter().find(|u| u.target == all[0].unknown.target).unwrap();
+        assert!(near.sd < 0.1, "{near:?}");
+
+        let of_both = bench::experiment(&[loss("near", 3.0), loss("far", 3.0)]);
+        let all = insulations(&of_both);
+        let (mut search, mut settled) = with_both(&of_both, &all);
+        search.step_back(&mut settled).unwrap();
+        assert_eq!((search.taken.len(), settled.effects.len()), (2, 2));
+    }
+
+    #[test]
+    fn what_leaves_far_more_than_another_is_refuted() {
+        let experiment = bench::experiment(&[loss("far", 3.0)]);
+        let all = insulations(&experiment);
+        let search = search(&experiment, &all);
+        let start = |k| Start { candidates: vec![k], at: vec![0.0], earlier: None };
+        let mut tried = search.common().fits(&[start(0), start(1)], Care::Quick);
+        let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
+        let findings = search.ranked(&null.unwrap(), &mut tried);
+        let of = |f: &Finding| (f.component.clone(), f.probability > 0.8);
+        // What the near pipe loses more, the sensor in the middle would see.
+        assert_eq!(
+            findings.iter().map(of).collect::<Vec<_>>(),
+            [("far".to_owned(), true), ("near".to_owned(), false)]
+        );
+        assert_eq!(findings[1].probability, 0.0, "{findings:?}");
+        assert!((findings[0].estimate.value - 3.0).abs() < 0.2, "{:?}", findings[0].estimate);
+    }
+
+    #[test]
+    fn a_pair_is_taken_where_it_explains_more_than_one() {
+        // The near pipe loses less, the far one more: the house hardly sees it.
+        let experiment = bench::experiment(&[loss("near", 0.4), loss("far", 2.0)]);
+        let all = insulations(&experiment);
+        let mut search = search(&experiment, &all);
+        let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
+        let null = search.leave_out(null.unwrap());
+        let z = search.z(&null.readings);
+        let mut watch = Stopwatch::new();
+        let round = search.round(null, z, &mut watch).unwrap().unwrap();
+        let first = search.first(round).unwrap();
+        let mut settled = Settled { verdict: Verdict::Unexplained, ..Settled::nothing() };
+        search.pair(&first, &mut settled).unwrap();
+        assert_eq!(
+            (settled.verdict, search.taken.len()),
+            (Verdict::Named, 2),
+            "{}",
+            settled.because
+        );
+        let value = |pipe: &str| {
+            settled.effects.iter().find(|f| f.component == pipe).unwrap().estimate.value
+        };
+        assert!((value("near") - 0.4).abs() < 0.1 && (value("far") - 2.0).abs() < 0.2);
+    }
 }
