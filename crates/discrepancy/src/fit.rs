@@ -366,21 +366,21 @@ mod tests {
 
     #[test]
     fn a_trial_with_which_the_model_does_not_run_shortens_the_step() {
-        // Water of 62 degC at most, valid until 99 degC: 36.5 K warmer it runs, 0.02 * 100 K more it does not.
+        // Water that begins at 47 degC, valid until 99 degC: 51 K warmer it runs, 0.02 * 100 K more it does not.
         let experiment = bench::experiment(&[]);
-        let offset = Unknown { start: 36.5, ..Unknown::plain(Target::Bias(0), 0.0, 100.0) };
-        assert!(experiment.readings(std::slice::from_ref(&offset), &[-38.5]).is_err());
+        let warmer = Unknown::plain(Target::Initial(0), 0.0, 100.0);
+        assert!(experiment.readings(std::slice::from_ref(&warmer), &[53.0]).is_err());
         let n = experiment.samples.len();
         let likelihood = Likelihood::new(vec![0.1; n], (0..n).collect());
-        let alone = |offset: Unknown| {
-            fit(&experiment, &[offset], &likelihood, &Slopes::new(), Care::Quick).unwrap()
+        let from = |start: f64| {
+            let unknown = Unknown { start, ..warmer.clone() };
+            fit(&experiment, &[unknown], &likelihood, &Slopes::new(), Care::Quick)
         };
-        for start in [-36.5, 0.5] {
-            let found = alone(Unknown { start, ..offset.clone() });
-            assert!(found.at[0].abs() < 0.02, "{start}: {}", found.at[0]);
+        for start in [51.0, 0.5] {
+            let found = from(start).unwrap();
+            assert!(found.at[0].abs() < 0.05, "{start}: {}", found.at[0]);
         }
         // Nothing runs at its start: no fit.
-        let none = Unknown { start: -60.0, ..offset };
-        assert!(fit(&experiment, &[none], &likelihood, &Slopes::new(), Care::Quick).is_err());
+        assert!(from(60.0).is_err());
     }
 }

@@ -112,8 +112,8 @@ mod tests {
     fn what_does_not_run_is_tried_weaker_or_is_worthless() {
         let experiment = bench::experiment(&[]);
         let all = candidates(&experiment);
-        let is_offset = |c: &Candidate| (c.id, c.component.as_str()) == ("S1", "T_in");
-        let k = all.iter().position(is_offset).unwrap();
+        let is_length = |c: &Candidate| (c.id, c.component.as_str()) == ("P10", "far");
+        let k = all.iter().position(is_length).unwrap();
         let n = experiment.samples.len();
         let likelihood = Likelihood::new(vec![0.1; n], (0..n).collect());
         let (base, slopes) = (Vec::new(), Slopes::new());
@@ -125,9 +125,9 @@ mod tests {
             slopes: &slopes,
         };
         let from = |at: f64| Start { candidates: vec![k], at: vec![at], earlier: None };
-        // The sensor reads 50 K too little: water of 62 + 50 degC. Half of it runs.
-        let tried = common.fits(&[from(-50.0), from(-500.0)], Care::Quick);
+        // A length of -0.1 is none, half of that change is a length of 0.45. Of -10 not even a quarter is: 1 - 11/4 < 0.
+        let tried = common.fits(&[from(-0.1), from(-10.0)], Care::Quick);
         assert_eq!(tried.len(), 1);
-        assert!(tried[0].fit.at[0].abs() < 0.02, "{:?}", tried[0].fit.at);
+        assert!((tried[0].fit.at[0] - 1.0).abs() < 0.2, "{:?}", tried[0].fit.at);
     }
 }
