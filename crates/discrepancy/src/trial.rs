@@ -55,8 +55,8 @@ impl Common<'_> {
     /// Fits beside what is there. A candidate with which the model does not run, nor with half and a quarter of it, is none.
     pub fn fits(&self, starts: &[Start], care: Care) -> Vec<Tried> {
         let weaker = |k: usize| {
-            let trials = [1.0, 0.5, 0.25].into_iter();
-            trials.filter_map(|share| self.fit_one(&starts[k], share, care).ok()).next()
+            let mut shares = [1.0, 0.5, 0.25].into_iter();
+            shares.find_map(|share| self.fit_one(&starts[k], share, care).ok())
         };
         on_all_cores(starts.len(), weaker).into_iter().flatten().collect()
     }
