@@ -81,11 +81,12 @@ struct Flush {
     m_flow_kg_s: f64,
 }
 
+/// How long consumers have cold water, s, by station; and what was tried against it.
+type ColdAndAdvice = (BTreeMap<String, f64>, Vec<Advice>);
+
 /// Tries to flush the pipe of the first feeder whose start sends cold water to consumers: how long they have it, and the
 /// remedies; `None` where no start does.
-pub(super) fn advise(
-    model: &Model,
-) -> Result<Option<(BTreeMap<String, f64>, Vec<Advice>)>, RunError> {
+pub(super) fn advise(model: &Model) -> Result<Option<ColdAndAdvice>, RunError> {
     for time_s in starts_s(model) {
         let Some(start) = start(model, time_s)? else { continue };
         let before = follow(model, &start, None)?;
@@ -197,10 +198,8 @@ fn dead_leg(
             .filter(|&next| next != last && woke(next) && end(next).0 == here)
             .max_by(|a, b| awake.m_flow_kg_s[*a].abs().total_cmp(&awake.m_flow_kg_s[*b].abs()));
         let Some(next) = onward.filter(|&next| !nodes.contains(&end(next).1)) else { break };
-        if counts {
-            if let EdgeThermal::PlugFlow(pipe) = network.edges[next].element.thermal() {
-                content_kg += pipe.content_kg;
-            }
+        if counts && let EdgeThermal::PlugFlow(pipe) = network.edges[next].element.thermal() {
+            content_kg += pipe.content_kg;
         }
         nodes.push(end(next).1);
         last = next;
