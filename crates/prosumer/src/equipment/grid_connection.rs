@@ -260,7 +260,7 @@ mod tests {
     }
 
     impl Connection {
-        fn new(params: GridConnectionParams) -> Self {
+        fn new(params: &GridConnectionParams) -> Self {
             let unit = params.build(&Medium::default()).unwrap();
             Self { state: unit.initial_state(293.15), out: [0.0; 16], unit }
         }
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn shares_by_hand() {
-        let mut connection = Connection::new(GridConnectionParams::default());
+        let mut connection = Connection::new(&GridConnectionParams::default());
         // An hour: 3 kW generated, 1 kW used, 2 kW fed in; an hour: 1 kW drawn.
         connection.advance(3600.0, &[-2000.0, 3000.0]);
         let out = connection.out;
@@ -289,7 +289,7 @@ mod tests {
 
     #[test]
     fn phases_by_hand() {
-        let mut connection = Connection::new(GridConnectionParams::default());
+        let mut connection = Connection::new(&GridConnectionParams::default());
         // A roof of one phase gives 4.5 kW on the second, a kettle draws 2 kW on the first; 0.9 kW more are of three phases.
         connection.advance(60.0, &[-1600.0, 4500.0, 2000.0, -4500.0]);
         let out = connection.out;
@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn costs_by_hand() {
         const EUR_KWH: f64 = 1.0 / 3.6e6;
-        let mut connection = Connection::new(GridConnectionParams {
+        let mut connection = Connection::new(&GridConnectionParams {
             import_price_eur_j: 0.32 * EUR_KWH,
             export_price_eur_j: 0.06 * EUR_KWH,
             chp_bonus_eur_j: 0.10 * EUR_KWH,
