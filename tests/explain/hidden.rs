@@ -1,5 +1,6 @@
 //! `explain` on cases of the independent truth generator (`tests/hidden_effects`): a small fixed part of what
-//! `make explain-score` runs. The files are those of `cases.py --rig R1 --seed 11 --draws 2 --nulls 2`.
+//! `make explain-score` runs. The files are those of `cases.py --rig R1 --seed 11 --draws 2 --nulls 2`,
+//! and `cases.py fixed --rig R1 --seed 12 --sensors poor --effect S3 T_house 100`.
 
 #![allow(clippy::unwrap_used)]
 
@@ -46,4 +47,16 @@ fn kelvin_for_celsius_is_a_problem_of_the_data() {
     let found = explained("R1-12-10");
     assert_eq!(found.verdict, Verdict::DataProblem);
     assert!(found.because.contains("T_in") && found.effects.is_empty(), "{}", found.because);
+}
+
+#[test]
+fn a_drift_of_one_of_two_sensors_is_found_but_not_which() {
+    // The outlet drifts by -0.62 K in the run; an inlet that drifts by as much the other way looks the same.
+    let found = explained("R1-12-S3");
+    let class: Vec<(&str, &str)> =
+        found.class.iter().map(|f| (f.id, f.component.as_str())).collect();
+    assert_eq!(found.verdict, Verdict::Class, "{:?}", found.because);
+    assert!(class.contains(&("S3", "T_house")) && class.iter().all(|c| c.0 == "S3"), "{class:?}");
+    let drift = found.class.iter().find(|f| f.component == "T_house").unwrap().estimate;
+    assert!(drift.lo < -0.62 && -0.62 < drift.hi, "{drift:?}");
 }
