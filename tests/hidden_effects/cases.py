@@ -284,7 +284,7 @@ def main():
     parser.add_argument("--nulls", type=int, default=COUNTS["null"])
     parser.add_argument("--only-nulls", action="store_true")
     parser.add_argument("--counts", type=json.loads, default={}, help='other numbers of cases of a draw, as {"pair": 0, "single": {"easy": 2}}')
-    parser.add_argument("--effect", nargs=3, metavar=("ID", "COMPONENT", "GAIN"), help="a single case with this effect, so that it gains about so many nats")
+    parser.add_argument("--effect", nargs=3, metavar=("ID", "COMPONENT", "GAIN"), help="a single case with this effect, so that it gains about so many nats; =VALUE: as strong as that")
     parser.add_argument("--kind", type=json.loads, default={}, help="what the rig is beside what is drawn, as JSON")
     parser.add_argument("--sensors", choices=["both", "rich", "poor"], default="both", help="both: in turns")
     wanted = parser.parse_args()
@@ -297,7 +297,8 @@ def main():
         d = Draw(module, wanted.seed, wanted.sensors == "rich", **wanted.kind)
         effect = next(e for e in d.effects if e[:2] == tuple(wanted.effect[:2]))
         rng = np.random.default_rng([wanted.seed, 7])
-        value = d.of_strength(effect, float(wanted.effect[2]), rng)
+        strength = wanted.effect[2]
+        value = float(strength[1:]) if strength.startswith("=") else d.of_strength(effect, float(strength), rng)
         make(d, wanted.out / f"{wanted.rig}-{wanted.seed}-{effect[0]}", rng, effects=[(effect, value)])
         print(effect[:3], f"{value:.4g}, {d.gain(effect, value):.0f} nats, class {d.together(effect, d.seen(effect, value))}")
         return

@@ -160,7 +160,7 @@ def sensors(rig):
             Sensor("flow", "plant.m_flow_kg_s", "input", "mid", truth="flow", **FLOW)]
     for name in names:
         all_.append(Sensor(f"T_{nodes[name]}", f"{nodes[name]}.t_k", "compare", "pt100_a", truth=f"{name}.t", blank="flow", **TEMPERATURE))
-    if rig["rich"]:
+    if rig["rich"] or rig.get("dp"):
         for name in names:
             all_.append(Sensor(f"dp_{name}", f"{name}.dp_pa", "compare", "dp_0_25", truth=f"{name}.dp", unit="hPa", quantisation=0.1))
     return all_
@@ -193,7 +193,7 @@ def effects(rig):
         yield "P10", n, "factor", (lambda x, n=n: {f"{n}.length": x}), 1.02, (0.7, 1.3), 1.0
         if rig.get("long"):
             yield "P4", n, "capacity_j_m_k", (lambda x, n=n: {f"{n}.ground": x}), 1e5, (2e4, 5e5), 0.0
-        if rig["rich"]:
+        if rig["rich"] or rig.get("dp"):
             yield "P8", n, "factor", (lambda x, n=n: {f"{n}.friction": x}), 1.3, (0.5, 5.0), 1.0
 
 
