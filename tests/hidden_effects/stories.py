@@ -111,7 +111,7 @@ def main():
         if wanted.write_only:
             continue
         (results / f"{place.name}.json").unlink(missing_ok=True)
-        run(place, wanted.anergy.resolve(), results, 600)
+        run(place, wanted.anergy.resolve(), results, 600, {"kind": "story"})
         result = json.loads((results / f"{place.name}.json").read_text())
         rows.append(row(answer, result))
         print(rows[-1], flush=True)
