@@ -20,7 +20,9 @@ R3 two houses that feed in with pumps and one that takes heat; *rich* has sensor
 left by the model with the true effect at its true value, driven by the same readings (offsets, clocks and tolerances remain in both); residuals over sigma
 are those beside the offsets, clocks and tolerances that were fitted. "Next to it": nothing lies between the component that is named and the true one.
 
-R4 and R5 of the plan (a tree of 20 substations, an ambient loop) have no generator; effects that `explain` does not know are not among the single ones.
+R4 and R5 of the plan (a tree of 20 substations, an ambient loop) have no generator; effects that `explain` does not know are not among the single ones. `P4` needs hours (a bench of its own, `--kind '{"long": true}'`), `X1` and `H8` an exchanger and a
+mixing valve that no bench has: they are tried and not hidden.
+`twin.py --effect` puts one effect into both programs, so that both mean the same by it.
 """
 
 
