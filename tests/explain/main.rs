@@ -5,4 +5,5 @@ mod effects;
 mod hidden;
 mod liege;
 mod measurements;
+mod rse;
 mod small_cases;
