@@ -14,7 +14,7 @@ const ZERO: (f64, f64) = (0.03, 0.001);
 const FIRST_K: f64 = 0.3;
 
 /// Time constant of a sensor beyond the one that is known, s: small ones cannot be told from how a front is smeared.
-const LAG_S: f64 = 1.0;
+const LAG_S: f64 = 1.5;
 /// The time constant that is known is right to this share at most.
 const LAG: f64 = 0.2;
 

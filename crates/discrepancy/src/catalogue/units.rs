@@ -4,15 +4,16 @@ use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
 
-/// Tolerance of the heat loss of a storage, relative: at most 8 %.
-const LOSS: f64 = 0.08 / ROOT3;
-/// Tolerance of an efficiency, relative: at most 2 %.
-const EFFICIENCY: f64 = 0.02 / ROOT3;
+/// Tolerance of the heat loss of a storage, relative.
+const LOSS: f64 = 0.08;
+/// Tolerance of an efficiency, relative.
+const EFFICIENCY: f64 = 0.02;
 /// Of the mixing along the height of a storage, whose layers are a model of it: logarithm of its factor.
-const MIXING: f64 = 0.5;
-/// Tolerance of the time that a start takes, relative: at most 10 %.
-const START: f64 = 0.1 / ROOT3;
-const ROOT3: f64 = 1.732_050_807_568_877_2;
+const MIXING: f64 = 0.7;
+/// Tolerance of the time that a start takes, relative.
+const START: f64 = 0.1;
+/// What the efficiency at part load may be off, relative: maps of a few loads are straight between them.
+const PART: f64 = 0.02;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
@@ -169,6 +170,7 @@ fn of_generator(id: &str, all: &mut Vec<Candidate>) {
         part,
         "several loads",
     );
+    let load = load.tolerated(0.0, PART);
     all.push(load.with("factor_20", part).with("factor_60", part));
     let start = Candidate::effect(
         "G3",
