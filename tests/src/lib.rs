@@ -1,4 +1,4 @@
-//! Tests of the whole workspace: each file beside this folder is one of them. Here is what several of
+//! Tests of the whole workspace: each folder beside this one is a program of them. Here is what several of
 //! them need: where things are, random numbers that are the same every time, random elements.
 
 pub mod pages;
