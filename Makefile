@@ -68,7 +68,7 @@ validate: ## Slow cases, peers, large random sets
 	PROPTEST_CASES=2000 NETWORKS=10000 ROBUSTNESS=10000 RSE_TESTS=all WEIGHTED_PI=all HUNTING=500 AMBIENT_DAY=1 LABORATORY=all EXPLAIN=all TABLE_DATE=$$(date +%F) \
 		cargo test --release -p anergy-tests --tests -- --nocapture \
 		every_element:: random_networks:: robustness:: destest:: openmodelica_heat:: ait_pongau:: ulg_pipe:: pipe_steps:: building:: \
-		rse_facility:: weighted_pi:: hunting:: hunting_random:: storage_charging:: ambient_day:: laboratory_houses:: liege:: ait::
+		rse_facility:: weighted_pi:: hunting:: hunting_random:: storage_charging:: ambient_day:: laboratory_houses:: liege:: ait:: rse::
 	$(MAKE) explain-stories
 	$(MAKE) bench-ensemble
 

@@ -2,6 +2,7 @@
 //! (`examples/5gdhc-day`). The first day of the run warms floors and walls; the second one is judged.
 #![allow(clippy::unwrap_used)]
 
+use crate::running::get;
 use anergy_core::clock::Time;
 use anergy_core::error::RecordError;
 use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
@@ -37,10 +38,6 @@ fn simulation(text: &str) -> Simulation {
 
 fn time(s: f64) -> Time {
     Time::from_s(s).unwrap()
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap())
 }
 
 fn degc(simulation: &Simulation, channel: &str) -> f64 {

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::running::get;
 use allocation_counter::measure;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
@@ -125,10 +126,6 @@ fn advance(simulation: &mut Simulation, until_s: f64) {
 /// Open while off, drawn along by the boiler.
 fn open() -> Model {
     house(&[("h.engine.idle_opening", json!(1.0)), ("h.engine.suction", json!(0.15))])
-}
-
-fn get(simulation: &Simulation, name: &str) -> f64 {
-    simulation.get(simulation.channel(name).unwrap_or_else(|_| panic!("no channel {name}")))
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Heat pumps in a model: `examples/heat-pumps` in steps of any length, with its balances, from a snapshot.
 #![allow(clippy::unwrap_used)]
 
+use crate::running::get;
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
@@ -14,10 +15,6 @@ fn simulation() -> Simulation {
     let model = Model::from_toml(&text, &folder)
         .unwrap_or_else(|problems| panic!("{}", problems.render(&text)));
     Simulation::new(build(&model).unwrap()).unwrap()
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("{channel}")))
 }
 
 fn advance(simulation: &mut Simulation, until_s: i64, step_s: i64) {

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use crate::running::get;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
@@ -130,10 +131,6 @@ off_above_degc = 58
         }
     };
     AROUND.to_owned() + &text
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
 }
 
 /// What the heating side of an installation did: return by flow, degC, heat, J; water drawn, m3; discomfort, K m3; starts

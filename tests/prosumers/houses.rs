@@ -2,16 +2,14 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::running::{advance, get, simulation};
 use allocation_counter::measure;
 use anergy_core::clock::Time;
 use anergy_core::error::RecordError;
 use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
 use anergy_simulation::balance::{Balances, summary};
-use anergy_simulation::build::build;
-use anergy_simulation::model::Model;
 use anergy_simulation::run::{RunOptions, run};
 use anergy_simulation::simulation::Simulation;
-use std::path::Path;
 
 /// Water that goes round beside the house, and a cold sunny day in February.
 const AROUND: &str = r#"format = 1
@@ -140,22 +138,6 @@ on_below_degc = 60
 off_above_degc = 55
 on_output = 0.8
 "#;
-
-fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, Path::new("."))
-        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(plan).unwrap()
-}
-
-fn advance(simulation: &mut Simulation, seconds: f64, step_s: f64) {
-    let end = simulation.time() + Time::from_s(seconds).unwrap();
-    simulation.advance_to(end, Time::from_s(step_s).unwrap()).unwrap();
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
-}
 
 const UNITS: [&str; 9] = [
     "boiler",

@@ -3,37 +3,18 @@
 
 #![allow(clippy::unwrap_used)]
 
-use anergy_core::clock::Time;
+use crate::running::{advance, get, simulation};
 use anergy_core::recorder::Event;
 use anergy_simulation::balance::{Balances, summary};
-use anergy_simulation::build::build;
-use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
 use anergy_tests::pages::write_table;
 use std::fmt::Write;
-use std::path::Path;
 
 const HOUSES: [&str; 5] = ["sf1", "sf2", "sf3", "sf4", "mf5"];
 
 fn text(house: &str) -> String {
     let path = anergy_tests::workspace().join(format!("examples/laboratory-{house}/model.toml"));
     std::fs::read_to_string(path).unwrap()
-}
-
-fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, Path::new("."))
-        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(plan).unwrap()
-}
-
-fn advance(simulation: &mut Simulation, seconds: f64, step_s: f64) {
-    let end = simulation.time() + Time::from_s(seconds).unwrap();
-    simulation.advance_to(end, Time::from_s(step_s).unwrap()).unwrap();
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
 }
 
 /// Electric units of a house.

@@ -2,9 +2,9 @@
 //! interface, snapshots.
 #![allow(clippy::unwrap_used)]
 
+use crate::running::{get, simulation};
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
-use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
 use std::path::Path;
@@ -52,17 +52,6 @@ points = [[0, 60], [600, 30], [1200, 60]]
 site = "house"
 kind = "prosumer"
 "#;
-
-fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, Path::new("."));
-    let model = model.unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(plan).unwrap()
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|error| panic!("{error}")))
-}
 
 fn advance(simulation: &mut Simulation, until_s: f64, step_s: f64) {
     let [until, step] = [until_s, step_s].map(|s| Time::from_s(s).unwrap());

@@ -3,15 +3,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::running::{self, get};
 use anergy_control::controller::{Controller, Inputs};
 use anergy_control::controllers::rule::RuleParams;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
-use anergy_simulation::build::build;
-use anergy_simulation::model::Model;
 use anergy_simulation::model_file::house_library;
 use anergy_simulation::simulation::Simulation;
-use std::path::Path;
 
 /// Values around all thresholds, degC.
 const DEGC: [f64; 18] = [
@@ -251,10 +249,7 @@ fn simulation(house: &str) -> Simulation {
         "format = 1\n[run]\nuntil = \"1d\"\nstep = \"60s\"\nstart = \"2023-02-13T00:00:00Z\"\n\
          [weather]\nkind = \"synthetic\"\nseed = 4\nlatitude_deg = 48.1\nlongitude_deg = 11.6\n{house}"
     );
-    let model = Model::from_toml(&text, Path::new("."))
-        .unwrap_or_else(|problems| panic!("{}", problems.render(&text)));
-    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(&text)));
-    Simulation::new(plan).unwrap()
+    running::simulation(&text)
 }
 
 fn advance(simulation: &mut Simulation, seconds: f64) {
@@ -265,10 +260,6 @@ fn advance(simulation: &mut Simulation, seconds: f64) {
 fn set(simulation: &mut Simulation, signal: &str, value: f64) {
     let signal = simulation.signal(signal).unwrap_or_else(|_| panic!("no signal {signal}"));
     simulation.set(signal, value).unwrap();
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
 }
 
 /// The rules of SF2 as a backup behind an energy management that wants nothing.

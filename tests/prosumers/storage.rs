@@ -2,12 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::running::{advance, get, simulation};
 use allocation_counter::measure;
-use anergy_core::clock::Time;
-use anergy_simulation::build::build;
-use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
-use std::path::Path;
 
 /// A boiler charges a storage from which a load is served; the network beside it only circulates.
 fn house(scheme: &str) -> String {
@@ -79,22 +76,6 @@ id = "solar"
 through = ["collector", "storage.solar"]
 "#
     )
-}
-
-fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, Path::new("."))
-        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    let plan = build(&model).unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(plan).unwrap()
-}
-
-fn advance(simulation: &mut Simulation, seconds: f64, step_s: f64) {
-    let end = simulation.time() + Time::from_s(seconds).unwrap();
-    simulation.advance_to(end, Time::from_s(step_s).unwrap()).unwrap();
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|_| panic!("no channel {channel}")))
 }
 
 fn set(simulation: &mut Simulation, signal: &str, value: f64) {

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::running::get;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
@@ -25,10 +26,6 @@ fn house(idle_opening: f64, suction: f64) -> Simulation {
     };
     let model = model.with(&[set("idle_opening", idle_opening), set("suction", suction)]).unwrap();
     Simulation::new(build(&model).unwrap()).unwrap()
-}
-
-fn get(simulation: &Simulation, name: &str) -> f64 {
-    simulation.get(simulation.channel(name).unwrap_or_else(|_| panic!("no channel {name}")))
 }
 
 fn advance(simulation: &mut Simulation, until_s: f64, step_s: f64) {

@@ -1,6 +1,7 @@
 //! Weather in models: what the signals `weather.*` are in a run, who follows them, and who takes them over.
 #![allow(clippy::unwrap_used)]
 
+use crate::running::get;
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
@@ -48,10 +49,6 @@ fn read(text: &str, folder: &Path) -> Model {
 
 fn started(model: &Model) -> Simulation {
     Simulation::new(build(model).unwrap_or_else(|problems| panic!("{problems}"))).unwrap()
-}
-
-fn get(simulation: &Simulation, channel: &str) -> f64 {
-    simulation.get(simulation.channel(channel).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn advance(simulation: &mut Simulation, until_s: i64, step_s: i64) {

@@ -16,7 +16,7 @@ use crate::experiment::Experiment;
 use crate::unknown::{Target, Unknown};
 
 /// What lies within so many standard deviations of a tolerance belongs to it.
-const WITHIN: f64 = 2.0;
+const TOLERATED: f64 = 2.0;
 
 /// A group of effects.
 struct Group {
@@ -106,7 +106,7 @@ impl Candidate {
 
     /// Whether a fitted coordinate is no more than the tolerance of its quantity.
     pub fn within(&self, coordinate: f64) -> bool {
-        self.tolerance.is_some() && self.strain(coordinate) < WITHIN
+        self.tolerance.is_some() && self.strain(coordinate) < TOLERATED
     }
 
     /// How far a fitted coordinate lies outside of what is plausible without the effect or, where there is no

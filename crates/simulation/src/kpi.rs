@@ -192,11 +192,7 @@ impl Places {
             Some((end(edge.to.index())?, end(edge.from.index())?))
         });
         let booked = plan.units.iter().map(|unit| unit.slots.len() == 1 || unit.equipment.serves());
-        let unmet = plan.units.iter().map(|unit| {
-            let outputs = unit.equipment.outputs();
-            let place = outputs.iter().position(|output| output.name == "unmet_w")?;
-            Some(unit.outputs.start + place)
-        });
+        let unmet = plan.units.iter().map(|unit| unit.output("unmet_w"));
         Self {
             between: between.collect(),
             balances: plan.stations.iter().map(balances).collect(),

@@ -114,6 +114,19 @@ impl GridConnection {
     }
 }
 
+/// Its inputs, in their order.
+mod input {
+    pub const SITE: usize = 0;
+    pub const GENERATED: usize = 1;
+    pub const PHASES: [usize; 3] = [2, 3, 4];
+    pub const FUEL: usize = 5;
+    pub const COGENERATED: usize = 6;
+    pub const IMPORT_PRICE: usize = 7;
+    pub const EXPORT_PRICE: usize = 8;
+    pub const FUEL_PRICE: usize = 9;
+    pub const REACTIVE: usize = 10;
+}
+
 impl ThermalUnit for GridConnection {
     fn ports(&self) -> Vec<UnitPort> {
         Vec::new()
@@ -196,14 +209,19 @@ impl ThermalUnit for GridConnection {
         state: &mut [f64],
         out: &mut [f64],
     ) -> Exchange {
-        let grid_w = signals.get(0);
+        let grid_w = signals.get(input::SITE);
         state[0] += dt_s * grid_w.max(0.0);
         state[1] += dt_s * (-grid_w).max(0.0);
-        state[2] += dt_s * signals.get(1);
-        let of_fuel = if signals.get(1) > 0.0 { signals.get(6) / signals.get(1) } else { 0.0 };
-        let export_eur_j = signals.get(8) + of_fuel.min(1.0) * self.params.chp_bonus_eur_j;
-        state[4] += dt_s * grid_w.max(0.0) * signals.get(7);
-        state[5] += dt_s * signals.get(5) * signals.get(9);
+        state[2] += dt_s * signals.get(input::GENERATED);
+        let of_fuel = if signals.get(input::GENERATED) > 0.0 {
+            signals.get(input::COGENERATED) / signals.get(input::GENERATED)
+        } else {
+            0.0
+        };
+        let export_eur_j =
+            signals.get(input::EXPORT_PRICE) + of_fuel.min(1.0) * self.params.chp_bonus_eur_j;
+        state[4] += dt_s * grid_w.max(0.0) * signals.get(input::IMPORT_PRICE);
+        state[5] += dt_s * signals.get(input::FUEL) * signals.get(input::FUEL_PRICE);
         state[6] += dt_s * (-grid_w).max(0.0) * export_eur_j;
         let [import_j, export_j, generated_j] = [state[0], state[1], state[2]];
         let consumed_j = import_j - export_j + generated_j;
@@ -212,7 +230,7 @@ impl ThermalUnit for GridConnection {
             if of_j > 0.0 { (1.0 - part_j / of_j).clamp(0.0, 1.0) } else { 0.0 }
         };
         let shares = [kept(export_j, generated_j), kept(import_j, consumed_j)];
-        let said_w = [signals.get(2), signals.get(3), signals.get(4)];
+        let said_w = input::PHASES.map(|phase| signals.get(phase));
         let rest_w = (grid_w - said_w.iter().sum::<f64>()) / said_w.len() as f64;
         let [a, b, c] = said_w.map(|w| w + rest_w);
         let asymmetry_w = a.max(b).max(c) - a.min(b).min(c);
@@ -232,8 +250,8 @@ impl ThermalUnit for GridConnection {
             asymmetry_w,
             state[3],
             asymmetric,
-            signals.get(10),
-            grid_w.hypot(signals.get(10)),
+            signals.get(input::REACTIVE),
+            grid_w.hypot(signals.get(input::REACTIVE)),
             state[4],
             state[5],
             state[6],

@@ -39,9 +39,9 @@ pub(super) fn find(plan: &mut Plan, writers: &HashMap<SignalId, Writer>) {
                 SITE_GRID => (electricity(plan, unit), 3),
                 SITE_REACTIVE => (reactive(plan, unit), 3),
                 SITE_COGENERATED => {
-                    let burns = |other: &usize| output(plan, *other, "fuel_w").is_some();
-                    let places = others(plan, unit).filter(burns);
-                    let places = places.filter_map(|other| output(plan, other, "generated_w"));
+                    let others = others(plan, unit).map(|other| &plan.units[other]);
+                    let burning = others.filter(|other| other.output("fuel_w").is_some());
+                    let places = burning.filter_map(|other| other.output("generated_w"));
                     (OfSite::Outputs(places.collect()), 1)
                 }
                 _ => match follows.strip_prefix(OF_SITE) {
@@ -65,10 +65,8 @@ pub(super) fn find(plan: &mut Plan, writers: &HashMap<SignalId, Writer>) {
     }
     plan.site_inputs = found;
     for (unit, planned) in plan.units.iter().enumerate() {
-        let outputs = planned.equipment.outputs();
         for flag in planned.equipment.flags() {
-            if let Some(place) = outputs.iter().position(|output| output.name == flag.output) {
-                let output = planned.outputs.start + place;
+            if let Some(output) = planned.output(flag.output) {
                 plan.flags.push(UnitFlag { unit, output, flag: *flag });
             }
         }
@@ -130,13 +128,6 @@ impl Builder<'_> {
     }
 }
 
-/// The place of an output of a unit among those of all units.
-fn output(plan: &Plan, unit: usize, name: &str) -> Option<usize> {
-    let planned = &plan.units[unit];
-    let place = planned.equipment.outputs().iter().position(|output| output.name == name)?;
-    Some(planned.outputs.start + place)
-}
-
 fn outputs(plan: &Plan, unit: usize, name: &str) -> Vec<usize> {
-    others(plan, unit).filter_map(|other| output(plan, other, name)).collect()
+    others(plan, unit).filter_map(|other| plan.units[other].output(name)).collect()
 }

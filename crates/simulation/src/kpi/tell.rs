@@ -1,12 +1,13 @@
 //! The indicators as JSON, in the units of the trade that their names end with.
 
 use super::{Passed, StationSums, m3};
-use crate::plan::Plan;
+use crate::plan::{Plan, PlannedUnit};
 use crate::simulation::Simulation;
 use crate::state::State;
 use anergy_core::medium::ZERO_CELSIUS_K;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Add;
 
 const J_PER_KWH: f64 = 3.6e6;
 const S_PER_H: f64 = 3600.0;
@@ -186,11 +187,11 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
     let mut all = Numbers::new();
     for (i, unit) in plan.units.iter().enumerate() {
         let (sums, mut to) = (&state.kpis.units[i], Numbers::new());
-        let output = |name| output(plan, state, i, name);
+        let output = |name| Some(state.unit_outputs[unit.output(name)?]);
         let (heat_j, cold_j) = (output("heat_j"), output("cold_j"));
         let (electric_j, fuel_j) = (output("electric_j"), output("fuel_j"));
         let starts = output("starts");
-        let cost_eur = cost_eur(plan, state, i);
+        let cost_eur = cost_eur(unit, state);
         let discomfort = (output("dc_heat_k_s"), output("dc_cool_k_s"));
         let shown = [
             ("starts", starts, 1.0),
@@ -260,16 +261,9 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
     all
 }
 
-/// An output of a unit, if it has it.
-fn output(plan: &Plan, state: &State, unit: usize, name: &str) -> Option<f64> {
-    let unit = &plan.units[unit];
-    let place = unit.equipment.outputs().iter().position(|output| output.name == name)?;
-    Some(state.unit_outputs[unit.outputs.start + place])
-}
-
 /// What a connection to the electric grid paid for electricity and fuel, less what it got.
-fn cost_eur(plan: &Plan, state: &State, unit: usize) -> Option<f64> {
-    let eur = |name| output(plan, state, unit, name);
+fn cost_eur(unit: &PlannedUnit, state: &State) -> Option<f64> {
+    let eur = |name| Some(state.unit_outputs[unit.output(name)?]);
     Some(eur("electricity_cost_eur")? + eur("fuel_cost_eur")? - eur("revenue_eur")?)
 }
 
@@ -312,8 +306,7 @@ fn network(plan: &Plan, state: &State) -> Numbers {
         add(&mut to, &format!("{which}_node_degc"), degc(extreme.t_k));
         to.insert(format!("{which}_node"), json!(plan.node_names[extreme.node]));
     }
-    let costs = (0..plan.units.len()).filter_map(|unit| cost_eur(plan, state, unit));
-    let costs_eur = costs.reduce(|sum, eur| sum + eur);
+    let costs_eur = plan.units.iter().filter_map(|unit| cost_eur(unit, state)).reduce(f64::add);
     add(&mut to, "cost_eur", costs_eur.unwrap_or(f64::NAN));
     let blocked_s: f64 = state.stations.iter().map(|station| station.blocked_s).sum();
     add(&mut to, "blocked_h", blocked_s / S_PER_H);

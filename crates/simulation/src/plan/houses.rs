@@ -33,6 +33,12 @@ impl PlannedUnit {
         self.ports.iter().any(|port| port.sets_flow)
             && self.ports.iter().any(|port| !port.sets_flow)
     }
+
+    /// The place of one of its outputs among the outputs of all units, if it has it.
+    pub(crate) fn output(&self, name: &str) -> Option<usize> {
+        let place = self.equipment.outputs().iter().position(|output| output.name == name)?;
+        Some(self.outputs.start + place)
+    }
 }
 
 /// A port of a unit that stands on an edge of the network.
