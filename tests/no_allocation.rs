@@ -84,6 +84,16 @@ fn demo_with_changing_pumps() {
     assert_no_allocation(&mut simulation(&demo()), &pumps, (100, 900), 1);
 }
 
+#[test]
+fn water_with_inertia_and_changing_pumps() {
+    let text =
+        std::fs::read_to_string(workspace().join("examples/three-houses/model.toml")).unwrap();
+    let text = text.replacen("[model]\n", "[model]\nfluid_inertia = true\n", 1);
+    assert!(text.contains("fluid_inertia"));
+    let pumps = [("sf1.feed_in_pump", 0.95), ("sf2.feed_in_pump", 0.85)];
+    assert_no_allocation(&mut simulation(&model(&text)), &pumps, (100, 300), 1);
+}
+
 /// A controller of the user that moves its pump a little at every update.
 struct Sways;
 

@@ -5,6 +5,7 @@ mod epanet;
 mod every_element;
 mod gains;
 mod ibpsa_components;
+mod inertia;
 mod pandapipes_ref;
 mod plant;
 mod prescribed;

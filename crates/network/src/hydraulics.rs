@@ -29,6 +29,7 @@ mod regulated;
 mod without;
 
 use crate::graph::{Edge, Network};
+use crate::inertia::Opposition;
 use crate::state::NetworkState;
 use crate::two_port::{Characteristic, EdgeState};
 use anergy_core::ids::EdgeId;
@@ -115,6 +116,7 @@ pub struct HydraulicSolver {
     corners: pieces::Corners,
     heads: heads::Heads,
     openings: regulated::Openings,
+    opposition: Opposition,
 }
 
 impl HydraulicSolver {
@@ -147,6 +149,7 @@ impl HydraulicSolver {
             corners: pieces::Corners::new(network),
             heads: heads::Heads::new(network),
             openings: regulated::Openings::new(network),
+            opposition: Opposition::new(),
         })
     }
 
@@ -163,14 +166,27 @@ impl HydraulicSolver {
         if state.hydraulics_valid {
             return Ok(HydraulicReport::default());
         }
+        if self.opposition.take(network, state) {
+            self.known = false;
+        }
         let report = if network.regulators.is_empty() {
             self.solve_given(network, state)?
         } else {
             self.solve_regulated(network, state)?
         };
         self.check_references(network, state)?;
-        state.hydraulics_valid = true;
+        state.hydraulics_valid = self.rests(state);
         Ok(report)
+    }
+
+    /// Whether the flows found are those that the pressures drive without inertia.
+    fn rests(&self, state: &NetworkState) -> bool {
+        state.m_flow_kg_s.iter().enumerate().all(|(i, m)| {
+            let Some((resistance, before)) = self.opposition.get(i) else { return true };
+            let steady_slope = self.laws.slope[i] - resistance;
+            let allowed_kg_s = CORRECTION_KG_S + CORRECTION_RELATIVE * m.abs();
+            (resistance * (m - before)).abs() <= steady_slope * allowed_kg_s
+        })
     }
 
     /// Solves at the present openings of the self-acting valves.
@@ -289,7 +305,14 @@ impl HydraulicSolver {
     #[inline]
     fn own_answer(&self, edge: &Edge, i: usize, m: f64, state: &EdgeState) -> Characteristic {
         let piece = self.corners.open.then(|| self.corners.characteristic(edge, i, m, state));
-        piece.flatten().unwrap_or_else(|| edge.characteristic(m, state))
+        let own = piece.flatten().unwrap_or_else(|| edge.characteristic(m, state));
+        match (own, self.opposition.get(i)) {
+            (Characteristic::PressureLoss(loss), Some((resistance, before))) => {
+                let opposes = Linear::new(resistance * (m - before), resistance);
+                Characteristic::PressureLoss(loss + opposes)
+            }
+            _ => own,
+        }
     }
 
     /// Law of every edge at the flows of the state; those that are known are kept.

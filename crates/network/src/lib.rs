@@ -14,6 +14,7 @@ pub mod graph;
 pub mod ground;
 pub mod holding;
 pub mod hydraulics;
+pub mod inertia;
 pub mod interface;
 mod memory;
 pub mod pipe_catalogue;

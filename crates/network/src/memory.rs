@@ -29,6 +29,7 @@ impl NetworkState {
             &self.q_ground_w,
         ];
         floats.iter().map(|values| values.capacity() * size_of::<f64>()).sum::<usize>()
+            + self.inertia.heap_bytes()
             + self.law_water.capacity() * size_of::<LawWater>()
             + self.prescribed.capacity() * size_of::<Prescribed>()
             + self.regulated.capacity() * size_of::<Regulated>()

@@ -1,6 +1,7 @@
 //! Everything of a network that changes during a run: plain data, cloned by a snapshot.
 
 use crate::graph::{Edge, Network, NodeKind, Regulator};
+use crate::inertia::Inertia;
 use crate::soil::SoilRings;
 use crate::transport::cells::Cells;
 use crate::transport::parcels::Parcels;
@@ -37,6 +38,8 @@ pub struct NetworkState {
     /// What the water of each edge is in the laws of pressure, where it follows the temperature; empty where
     /// all water is as the medium.
     pub law_water: Vec<LawWater>,
+    /// What the inertia of the water remembers, where it counts.
+    pub(crate) inertia: Inertia,
     /// Value and state of each prescription of the network.
     pub prescribed: Vec<Prescribed>,
     /// Each self-acting valve of the network.
@@ -142,6 +145,7 @@ impl NetworkState {
             exchange_kg_s: vec![0.0; nodes],
             density_kg_m3: Vec::new(),
             law_water: Vec::new(),
+            inertia: Inertia::default(),
             prescribed: vec![Prescribed::default(); network.prescriptions.len()],
             regulated: network
                 .regulators

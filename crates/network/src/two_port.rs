@@ -275,6 +275,12 @@ pub trait TwoPort {
     fn length_m(&self) -> f64 {
         0.0
     }
+
+    /// Length over cross-section, 1/m: what the water inside withstands a change of its flow with, where the
+    /// network counts inertia; zero for what is not a pipe.
+    fn inertance_1_m(&self) -> f64 {
+        0.0
+    }
 }
 
 /// A parameter of an element that cannot be.

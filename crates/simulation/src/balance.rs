@@ -41,6 +41,10 @@ pub struct Balances {
     pub hydraulic_j: f64,
     /// Hydraulic work dissipated in the other elements.
     pub dissipated_j: f64,
+    /// Change of the kinetic energy of the water, where it has inertia.
+    pub kinetic_j: f64,
+    /// Work that accelerated water and that the steps damp: less in shorter ones.
+    pub step_damped_j: f64,
     /// Heat that warms all water, and what passed in the largest flow, by `RESOLUTION_K`.
     pub resolution_j: f64,
     /// Hydraulic work of `RESOLUTION_W`.
@@ -69,6 +73,8 @@ impl Balances {
             units_stored_j: simulation.units_stored_j() - state.units_initial_j,
             hydraulic_j: state.pump_hydraulic_j,
             dissipated_j: state.dissipated_j,
+            kinetic_j: state.network.kinetic_j(network) - state.initial_kinetic_j,
+            step_damped_j: state.step_damped_j,
             resolution_j: RESOLUTION_K * capacity_j_k,
             hydraulic_resolution_j: RESOLUTION_W * state.time.as_s(),
         }
@@ -93,12 +99,9 @@ impl Balances {
     /// Hydraulic work that is not accounted for, relative to the work of the pumps, or to what flows are
     /// resolved by where next to nothing flowed.
     pub fn hydraulic_error(&self) -> f64 {
-        let terms = [self.hydraulic_j, self.dissipated_j];
-        relative(
-            self.hydraulic_j - self.dissipated_j,
-            terms.into_iter(),
-            self.hydraulic_resolution_j,
-        )
+        let left_j = self.hydraulic_j - self.dissipated_j - self.kinetic_j - self.step_damped_j;
+        let terms = [self.hydraulic_j, self.dissipated_j, self.kinetic_j];
+        relative(left_j, terms.into_iter(), self.hydraulic_resolution_j)
     }
 }
 
@@ -299,6 +302,16 @@ pub fn summary(simulation: &Simulation, interrupted: bool) -> Value {
             balance("electricity of units", balances.units_electric_j / 3.6e6, "kWh", error),
             balance("other heat into units", balances.units_external_j / 3.6e6, "kWh", error),
             balance("heat stored in units", balances.units_stored_j / 3.6e6, "kWh", error),
+        ]);
+    }
+    if state.network.counts_inertia()
+        && let Some(lines) = summary["balances"].as_array_mut()
+    {
+        let (energy_j, damped_j) = (balances.kinetic_j, balances.step_damped_j);
+        let error = balances.hydraulic_error();
+        lines.extend([
+            balance("kinetic energy of the water", energy_j / 3600.0, "Wh", error),
+            balance("damped by the steps", damped_j / 3600.0, "Wh", error),
         ]);
     }
     let friction = balance("heat of friction", balances.friction_j / 3.6e6, "kWh", heat);

@@ -349,6 +349,8 @@ impl Builder<'_> {
             passed_kg: 0.0,
             pump_hydraulic_j: 0.0,
             dissipated_j: 0.0,
+            step_damped_j: 0.0,
+            initial_kinetic_j: 0.0,
             initial_stored_j: 0.0,
             largest_mass_residual_kg_s: 0.0,
             stepping: crate::automatic_step::StepMemory::default(),

@@ -247,6 +247,8 @@ pub struct Model {
     pub thermosiphon: bool,
     /// Whether friction warms the water.
     pub dissipation: bool,
+    /// Whether the water in pipes has inertia.
+    pub fluid_inertia: bool,
     /// Latitude and longitude of the origin of the map, rad.
     pub origin_rad: Option<[f64; 2]>,
     /// What the pipes lie in.

@@ -59,6 +59,9 @@ pub struct ModelEntry {
     /// Whether the hydraulic power that an edge takes from the water warms it: friction.
     #[serde(default)]
     pub dissipation: bool,
+    /// Whether the water in pipes has inertia: flows need time to change.
+    #[serde(default)]
+    pub fluid_inertia: bool,
     /// Where x_m = 0 and y_m = 0 lie on the earth (WGS84): latitude, north positive, rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub latitude_rad: Option<f64>,

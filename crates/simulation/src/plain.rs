@@ -24,6 +24,9 @@ impl Model {
         if self.dissipation {
             about["dissipation"] = json!(true);
         }
+        if self.fluid_inertia {
+            about["fluid_inertia"] = json!(true);
+        }
         if let Some([latitude, longitude]) = self.origin_rad {
             about["latitude_rad"] = json!(latitude);
             about["longitude_rad"] = json!(longitude);

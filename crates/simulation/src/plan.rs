@@ -2,6 +2,7 @@
 
 mod control;
 mod houses;
+mod water;
 
 use crate::automatic_step::{AutomaticStep, Step};
 use crate::channels::{self, Source};
@@ -27,6 +28,7 @@ pub(crate) use houses::{
 };
 use smol_str::SmolStr;
 use std::sync::{Arc, OnceLock};
+pub(crate) use water::InitialWater;
 
 /// Pairs of nodes of which the smallest pressure difference is of interest.
 #[derive(Debug, Clone)]
@@ -102,40 +104,6 @@ pub(crate) struct SeasonalGround {
     /// Start of the run, s after New Year.
     pub start_s: f64,
     pub at_depths: Vec<(SignalId, f64)>,
-}
-
-/// The water at the start of a run: made anew for each start, because it is as large as the state.
-#[derive(Debug, Clone)]
-pub(crate) struct InitialWater {
-    pub t_k: f64,
-    /// Pipes that begin with another temperature, K.
-    pub pipes: Vec<(usize, f64)>,
-    /// From where a cold solve starts.
-    pub level_pa: f64,
-    pub follows_densities: bool,
-    pub counts_friction: bool,
-    pub follows_temperatures: bool,
-}
-
-impl InitialWater {
-    /// All water at rest at its initial temperatures.
-    fn state(&self, network: &Network) -> NetworkState {
-        let mut state = NetworkState::new(network, self.t_k);
-        for (pipe, t_k) in &self.pipes {
-            state.fill_pipe(*pipe, *t_k);
-        }
-        state.p_pa.fill(self.level_pa);
-        if self.follows_densities {
-            state.follow_densities(network);
-        }
-        if self.counts_friction {
-            state.count_friction();
-        }
-        if self.follows_temperatures {
-            state.follow_temperatures(network);
-        }
-        state
-    }
 }
 
 /// What the balances of every step need of an edge: a twentieth of what the network knows of it.

@@ -134,6 +134,7 @@ impl Simulation {
         self.fill_pipes();
         self.state.initial_stored_j = self.state.network.stored_j(&self.plan.network);
         self.state.units_initial_j = self.units_stored_j();
+        self.state.initial_kinetic_j = self.state.network.kinetic_j(&self.plan.network);
         self.show_units();
         Ok(())
     }
@@ -196,6 +197,7 @@ impl Simulation {
         self.drive_stations();
         self.apply_inputs();
         self.move_actuators((end - now).as_s());
+        self.state.network.begin_flow_step((end - now).as_s());
         self.solve_hydraulics()?;
         Ok(end)
     }
@@ -330,6 +332,12 @@ impl Simulation {
                 state.dissipated_j += work_j;
             }
         }
+        if network.counts_inertia() {
+            // What accelerates the water is not lost, but for what the step damps.
+            let (work_j, damped_j) = network.acceleration_j(&plan.network, dt_s);
+            state.dissipated_j -= work_j;
+            state.step_damped_j += damped_j;
+        }
         for (i, node) in plan.network.nodes.iter().enumerate() {
             if node.kind != NodeKind::Junction {
                 state.pump_hydraulic_j +=
@@ -345,6 +353,7 @@ impl Simulation {
         self.drive_stations();
         self.apply_inputs();
         self.move_actuators(f64::INFINITY);
+        self.state.network.begin_flow_step(f64::INFINITY);
         let report = self.solve_hydraulics()?;
         self.transport
             .settle(&self.plan.network, &mut self.state.network)

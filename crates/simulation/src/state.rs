@@ -94,6 +94,10 @@ pub struct State {
     pub(crate) passed_kg: f64,
     pub(crate) pump_hydraulic_j: f64,
     pub(crate) dissipated_j: f64,
+    /// Work that accelerated water and is not found in its motion.
+    pub(crate) step_damped_j: f64,
+    /// Kinetic energy of the water at the start.
+    pub(crate) initial_kinetic_j: f64,
     pub(crate) initial_stored_j: f64,
     pub(crate) largest_mass_residual_kg_s: f64,
     /// What the automatic step remembers.

@@ -5,7 +5,7 @@
 //! at that velocity, `friction_factor` gives it: `dp = K m|m|`. Hazen-Williams and Chezy-Manning give
 //! `dp = K m|m|^(n-1)`. Heat: see [`thermal`].
 //!
-//! **Assumptions** full pipe, one bore, no inertia. **Validity** all Re.
+//! **Assumptions** full pipe, one bore; inertia is that of [`crate::inertia`], where it counts. **Validity** all Re.
 //!
 //! **Numerics** laminar flow is linear, so friction needs no regularisation; fittings are regularised
 //! below Re = 2000, the fixed coefficient below `delta_m` times the nominal flow, the power laws below
@@ -291,14 +291,14 @@ impl PipeParams {
             });
         }
         let area_m2 = PI / 4.0 * diameter_m * diameter_m;
-        let velocity = self.fixed_velocity_m_s.map(|v| positive("fixed_velocity_m_s", v));
-        let m_flow_nominal_kg_s =
-            velocity.clone().transpose()?.unwrap_or(0.5) * area_m2 * medium.density_kg_m3;
+        let velocity =
+            self.fixed_velocity_m_s.map(|v| positive("fixed_velocity_m_s", v)).transpose()?;
+        let m_flow_nominal_kg_s = velocity.unwrap_or(0.5) * area_m2 * medium.density_kg_m3;
         let re_m = 4.0 / (PI * diameter_m);
         let friction_per_m4 = length_m / diameter_m / (2.0 * area_m2 * area_m2);
         let fittings_per_m4 = self.zeta / (2.0 * area_m2 * area_m2);
         let darcy = || DarcyFriction::new(self.friction, self.transition, relative_roughness);
-        let frozen = match (velocity.transpose()?, self.friction_factor) {
+        let frozen = match (velocity, self.friction_factor) {
             (None, None) => None,
             (Some(v), None) => {
                 let re = v * diameter_m * medium.density_kg_m3 / medium.viscosity_pa_s;
@@ -308,20 +308,16 @@ impl PipeParams {
                 Some(positive("friction_factor", factor)?)
             }
             (_, Some(_)) => {
-                return Err(ElementError::Fields {
-                    problem: "friction_factor stands for friction and fixed_velocity_m_s: leave \
-                              them out"
-                        .into(),
-                });
+                let problem = "friction_factor stands for friction and fixed_velocity_m_s: leave \
+                               them out";
+                return Err(ElementError::Fields { problem: problem.into() });
             }
         };
         let law = match (self.power_friction(diameter_m)?, frozen) {
             (Some(_), Some(_)) => {
-                return Err(ElementError::Fields {
-                    problem:
-                        "fixed_velocity_m_s freezes a Darcy friction factor: a power law has none"
-                            .into(),
-                });
+                let problem =
+                    "fixed_velocity_m_s freezes a Darcy friction factor: a power law has none";
+                return Err(ElementError::Fields { problem: problem.into() });
             }
             (Some(law), None) => Law::Power {
                 coefficient: law.coefficient * length_m * GRAVITY_M_S2,
@@ -394,6 +390,11 @@ impl TwoPort for Pipe {
 
     fn length_m(&self) -> f64 {
         self.length_m
+    }
+
+    fn inertance_1_m(&self) -> f64 {
+        // Re mu/|m| is 4/(pi d), the cross-section pi d^2/4.
+        self.length_m * PI / 4.0 * self.re_m * self.re_m
     }
 }
 

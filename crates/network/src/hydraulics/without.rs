@@ -46,6 +46,7 @@ impl Linearization {
         edge: Option<EdgeId>,
     ) -> Result<(), HydraulicError> {
         self.solver.shut(network, edge);
+        state.begin_flow_step(f64::INFINITY);
         state.invalidate_hydraulics();
         self.solver.solve(network, state)?;
         self.update(network, state)

@@ -1,7 +1,7 @@
 //! Friction: the hydraulic power that an edge takes from the water warms it.
 //!
 //! **Equation** `dT = max(dp, 0)/(rho cp)` between inlet and outlet, dp being the pressure loss in the
-//! sense of the flow without its hydrostatic part: the heat is `m dp/rho`. 1 bar warms water by 0.024 K. What
+//! sense of the flow without its hydrostatic part and what accelerates the water: the heat is `m dp/rho`. 1 bar warms water by 0.024 K. What
 //! a pump or source adds (dp < 0) warms nothing there; it is the friction elsewhere.
 //!
 //! **Assumptions** the heat appears at the outlet of the edge: the content of a pipe is colder than it would
@@ -36,7 +36,8 @@ impl Transport {
         let mut heat_w = 0.0;
         for i in 0..state.friction_k.len() {
             let m = state.m_flow_kg_s[i];
-            let loss_pa = m.signum() * state.driving_pa(network, i);
+            let loss_pa =
+                m.signum() * (state.driving_pa(network, i) - state.accelerating_pa(network, i));
             let rise_k = match m == 0.0 {
                 true => 0.0,
                 false => loss_pa.max(0.0) / (medium.density_kg_m3 * medium.heat_capacity_j_kg_k),

@@ -6819,6 +6819,7 @@ class Grid:
         gravity: float | None = None,
         thermosiphon: bool | None = None,
         dissipation: bool | None = None,
+        fluid_inertia: bool | None = None,
         latitude_rad: float | None = None,
         latitude_deg: float | None = None,
         longitude_rad: float | None = None,

@@ -103,6 +103,7 @@ impl Builder<'_> {
             level_pa: model.references.first().map_or(0.0, |r| r.entry.pressure_pa),
             follows_densities: model.thermosiphon,
             counts_friction: model.dissipation,
+            counts_inertia: model.fluid_inertia,
             follows_temperatures: model.follow_temperature,
         }
     }

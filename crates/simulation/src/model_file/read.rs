@@ -232,6 +232,7 @@ impl ModelReader<'_> {
             name: about.as_ref()?.0.name.clone(),
             gravity_m_s2: about.as_ref()?.0.gravity,
             dissipation: about.as_ref()?.0.dissipation,
+            fluid_inertia: about.as_ref()?.0.fluid_inertia,
             thermosiphon: about.as_ref()?.0.thermosiphon,
             origin_rad: about?.0.origin_rad().ok().flatten(),
             run: run?.0,

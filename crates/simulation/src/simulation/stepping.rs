@@ -88,6 +88,7 @@ impl Stepper {
     fn moves(&self, state: &State) -> bool {
         let positions = &state.network.position;
         !self.outputs.is_empty()
+            || state.network.flows_move()
             || self.lagging.iter().any(|edge| positions[*edge] != self.positions[*edge])
     }
 }
