@@ -3,7 +3,9 @@
 mod controllers;
 mod feed_in_types;
 mod hunting;
+mod hunting_inertia;
 mod hunting_random;
+mod hunting_series;
 mod pump_blocking;
 mod stability_blocking;
 mod user_controllers;

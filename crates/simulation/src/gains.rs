@@ -54,19 +54,51 @@ impl Gains {
         of: &[Source],
     ) -> Vec<Option<f64>> {
         let mut sums = vec![Some(0.0); of.len()];
-        for (cause, share) in &reach.causes {
-            self.linearization.respond(&plan.network, *cause, &mut self.response);
+        self.each_answer(plan, reach, |share, response| {
             for (sum, source) in sums.iter_mut().zip(of) {
-                let gain = channel_gain(plan, state, *source, &self.response);
+                let gain = channel_gain(plan, state, *source, response);
                 *sum = sum.zip(gain).map(|(sum, gain)| sum + share * gain);
             }
-        }
+        });
         for (sum, source) in sums.iter_mut().zip(of) {
             if let Some(own) = position_gain(plan, *source, &reach.positions) {
                 *sum = Some(own);
             }
         }
         sums
+    }
+
+    /// The answers to each cause of a signal, with its share.
+    pub fn each_answer(
+        &mut self,
+        plan: &Plan,
+        reach: &Reach,
+        mut take: impl FnMut(f64, &Response),
+    ) {
+        for (cause, share) in &reach.causes {
+            self.linearization.respond(&plan.network, *cause, &mut self.response);
+            take(*share, &self.response);
+        }
+    }
+
+    /// Whether something in the network follows by itself.
+    pub fn follows(&self) -> bool {
+        self.linearization.follows()
+    }
+
+    /// Asks for the answer to 1 Pa of head in an edge.
+    pub fn push(&mut self, plan: &Plan, edge: EdgeId) {
+        self.linearization.respond(&plan.network, Cause::Head(edge), &mut self.response);
+    }
+
+    /// Change of the flow of an edge in the last answer, kg/s.
+    pub fn flow(&self, edge: usize) -> f64 {
+        self.response.m_flow_kg_s[edge]
+    }
+
+    /// Change of a channel in the last answer, while no actuator moves; `None` where it follows temperatures.
+    pub fn value(&self, plan: &Plan, state: &State, of: Source) -> Option<f64> {
+        position_gain(plan, of, &[]).or_else(|| channel_gain(plan, state, of, &self.response))
     }
 }
 

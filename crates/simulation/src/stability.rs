@@ -4,6 +4,7 @@
 //! feeders, [`advise`] tries remedies.
 
 pub mod advise;
+mod answers;
 pub mod blocking;
 mod chain;
 mod count;
@@ -16,6 +17,7 @@ mod modes;
 mod periodic;
 mod response;
 mod secant;
+mod water;
 
 use crate::build::build;
 use crate::error::RunError;

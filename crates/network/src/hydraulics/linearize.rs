@@ -171,6 +171,11 @@ impl Linearization {
         found
     }
 
+    /// Whether something follows by itself: self-acting valves, free actuators.
+    pub fn follows(&self) -> bool {
+        !self.followers.is_empty()
+    }
+
     /// Answer of the network to one unit of a cause. Allocates nothing.
     pub fn respond(&mut self, network: &Network, cause: Cause, response: &mut Response) {
         self.disturbance.clear();

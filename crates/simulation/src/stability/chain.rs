@@ -1,6 +1,6 @@
 //! From the command of an actuator to the reading of a sensor: lags and a dead time, without their gain.
 //!
-//! **Equation** `exp(-s theta)/((1 + s T)^2 (1 + s tau))`; sampled at the interval h with the command held in
+//! **Equation** `exp(-s theta)/((1 + s T)^2 (1 + s tau_w) (1 + s tau))`, tau_w a lag of the water; sampled at the interval h with the command held in
 //! between, `theta = n h + delta`: `z^-(n+1) (Phi(h - delta) (z - Phi(h))^-1 Gamma(h) + Gamma(h - delta))`, exact.
 //! **Sources** `astrom2011`.
 
@@ -8,15 +8,15 @@ use nalgebra::{Complex, DMatrix};
 
 type C64 = Complex<f64>;
 
-/// Lags in a row: those of an actuator, that of a sensor.
-const MOST: usize = 3;
+/// Lags in a row: those of an actuator, that of the water, that of a sensor.
+const MOST: usize = 4;
 
 /// A chain of lags with a dead time.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chain {
     /// Time constants, s; without those that are zero.
     lags_s: Vec<f64>,
-    /// How many of them are those of the actuator.
+    /// How many of them are those of actuator and water.
     ahead: usize,
     dead_s: f64,
 }
@@ -25,7 +25,7 @@ pub(super) struct Chain {
 #[derive(Debug, Clone)]
 pub(super) struct SampledChain {
     n: usize,
-    /// Lags of the actuator; one more is that of the sensor.
+    /// Lags of actuator and water; one more is that of the sensor.
     ahead: usize,
     /// Whole samples of the dead time.
     late: i32,
@@ -36,9 +36,9 @@ pub(super) struct SampledChain {
 }
 
 impl Chain {
-    pub fn new(actuator_lag_s: f64, sensor_lag_s: f64, dead_s: f64) -> Self {
-        let all = [actuator_lag_s, actuator_lag_s, sensor_lag_s];
-        let ahead = if actuator_lag_s > 0.0 { 2 } else { 0 };
+    pub fn new(actuator_lag_s: f64, water_lag_s: f64, sensor_lag_s: f64, dead_s: f64) -> Self {
+        let all = [actuator_lag_s, actuator_lag_s, water_lag_s, sensor_lag_s];
+        let ahead = all[..3].iter().filter(|lag| **lag > 0.0).count();
         Self { lags_s: all.into_iter().filter(|lag| *lag > 0.0).collect(), ahead, dead_s }
     }
 
@@ -99,7 +99,7 @@ impl SampledChain {
         z.powi(-self.late)
     }
 
-    /// Lags of the actuator, which all chains behind it have: `(z - Phi) v = Gamma`, Phi lower triangular.
+    /// Lags of actuator and water, which all chains behind them have: `(z - Phi) v = Gamma`, Phi lower triangular.
     fn ahead(&self, z: C64) -> [C64; MOST] {
         let mut v = [Complex::new(0.0, 0.0); MOST];
         for i in 0..self.ahead {
@@ -138,6 +138,8 @@ pub(super) struct Chains {
     sensor_of: Vec<usize>,
     /// Sensor by sensor; empty where the controllers are continuous.
     sampled: Vec<SampledChain>,
+    /// Lag of the water in all of them, s.
+    water_lag_s: f64,
     interval_s: f64,
 }
 
@@ -149,17 +151,25 @@ pub(super) struct Seen {
 }
 
 impl Chains {
-    /// Chains of outputs with actuators of these lags and of values with these sensors; the interval is 0 where the
-    /// controllers are continuous.
-    pub fn new(actuator_lags_s: &[f64], seen: &[Seen], interval_s: f64) -> Self {
+    /// Chains of outputs with actuators of these lags and of values with these sensors, with a lag of the water or none
+    /// between them; the interval is 0 where the controllers are continuous.
+    pub fn new(actuator_lags_s: &[f64], seen: &[Seen], water_lag_s: f64, interval_s: f64) -> Self {
         let (lags, actuator_of) = kinds(actuator_lags_s);
         let (sensors, sensor_of) = kinds(seen);
         let pairs = sensors.iter().flat_map(|seen| lags.iter().map(move |lag| (*lag, *seen)));
         let chain = |(lag_s, seen): (f64, Seen)| {
-            Chain::new(lag_s, seen.lag_s, seen.dead_s).sampled(interval_s)
+            Chain::new(lag_s, water_lag_s, seen.lag_s, seen.dead_s).sampled(interval_s)
         };
         let sampled = if interval_s > 0.0 { pairs.map(chain).collect() } else { Vec::new() };
-        Self { actuator_lags_s: lags, sensors, actuator_of, sensor_of, sampled, interval_s }
+        Self {
+            actuator_lags_s: lags,
+            sensors,
+            actuator_of,
+            sensor_of,
+            sampled,
+            water_lag_s,
+            interval_s,
+        }
     }
 
     /// Whether all chains are one.
@@ -177,12 +187,15 @@ impl Chains {
         let (n, z) = (self.actuator_lags_s.len(), self.variable(s));
         let (of, to) = (&self.sensor_of, &self.actuator_of);
         if self.sampled.is_empty() {
-            let ahead: Vec<C64> =
-                self.actuator_lags_s.iter().map(|lag| Chain::new(*lag, 0.0, 0.0).at(s)).collect();
+            let ahead: Vec<C64> = self
+                .actuator_lags_s
+                .iter()
+                .map(|lag| Chain::new(*lag, self.water_lag_s, 0.0, 0.0).at(s))
+                .collect();
             let behind: Vec<C64> = self
                 .sensors
                 .iter()
-                .map(|seen| Chain::new(0.0, seen.lag_s, seen.dead_s).at(s))
+                .map(|seen| Chain::new(0.0, 0.0, seen.lag_s, seen.dead_s).at(s))
                 .collect();
             return gains.map_with_location(|i, j, gain| behind[of[i]] * (ahead[to[j]] * gain));
         }
@@ -216,7 +229,8 @@ impl Chains {
 
     fn chain(&self, i: usize, j: usize) -> Chain {
         let seen = self.sensors[self.sensor_of[i]];
-        Chain::new(self.actuator_lags_s[self.actuator_of[j]], seen.lag_s, seen.dead_s)
+        let actuator_lag_s = self.actuator_lags_s[self.actuator_of[j]];
+        Chain::new(actuator_lag_s, self.water_lag_s, seen.lag_s, seen.dead_s)
     }
 
     /// The fastest and the slowest of all times added up, s.
@@ -226,7 +240,9 @@ impl Chains {
         };
         let ahead = range(&mut self.actuator_lags_s.iter().map(|lag| 2.0 * lag));
         let behind = range(&mut self.sensors.iter().map(|seen| seen.lag_s + seen.dead_s));
-        ((ahead.0 + behind.0).max(self.interval_s), (ahead.1 + behind.1).max(self.interval_s))
+        let water_s = self.water_lag_s;
+        let least = (ahead.0 + water_s + behind.0).max(self.interval_s);
+        (least, (ahead.1 + water_s + behind.1).max(self.interval_s))
     }
 
     /// The longest dead time, s.
@@ -254,7 +270,7 @@ mod tests {
 
     #[test]
     fn a_sampled_chain_answers_like_the_chain_when_sampled_often() {
-        let chain = Chain::new(2.0, 1.0, 1.03);
+        let chain = Chain::new(2.0, 0.4, 1.0, 1.03);
         for omega in [0.05, 0.6, 2.0] {
             let s = Complex::new(0.01, omega);
             let h = 1e-3;
@@ -263,11 +279,11 @@ mod tests {
             assert!((sampled - chain.at(s) * hold).norm() < 1e-5, "{omega}");
         }
         // One lag of 1 s every second: (1 - 1/e)/(z - 1/e), by hand
-        let one = Chain::new(0.0, 1.0, 0.0);
+        let one = Chain::new(0.0, 0.0, 1.0, 0.0);
         let (z, e) = (Complex::new(0.3, 0.8), (-1.0_f64).exp());
         assert!((one.sampled(1.0).at(z) - (1.0 - e) / (z - e)).norm() < 1e-12);
         // 0.4 s late: z^-1 of what the lag is after 0.6 s
-        let late = Chain::new(0.0, 1.0, 0.4).sampled(1.0).at(z);
+        let late = Chain::new(0.0, 0.0, 1.0, 0.4).sampled(1.0).at(z);
         let rest = (-0.6_f64).exp();
         let by_hand = (rest * (1.0 - e) / (z - e) + (1.0 - rest)) / z;
         assert!((late - by_hand).norm() < 1e-12);
@@ -276,12 +292,12 @@ mod tests {
         let seen = seen.map(|(lag_s, dead_s)| Seen { lag_s, dead_s });
         let lags_s = [1.5, 0.0, 0.6];
         let s = Complex::new(-0.02, 0.9);
-        for interval_s in [0.0, 0.5] {
-            let chains = Chains::new(&lags_s, &seen, interval_s);
+        for (interval_s, water_s) in [(0.0, 0.0), (0.5, 0.0), (0.0, 0.8), (0.5, 0.8)] {
+            let chains = Chains::new(&lags_s, &seen, water_s, interval_s);
             let all = chains.plant(s, &DMatrix::from_element(4, 3, 1.0));
             for (i, seen) in seen.iter().enumerate() {
                 for (j, lag_s) in lags_s.iter().enumerate() {
-                    let chain = Chain::new(*lag_s, seen.lag_s, seen.dead_s);
+                    let chain = Chain::new(*lag_s, water_s, seen.lag_s, seen.dead_s);
                     let alone = match interval_s {
                         0.0 => chain.at(s),
                         h => chain.sampled(h).at((s * h).exp()),

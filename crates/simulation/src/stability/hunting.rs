@@ -1,21 +1,21 @@
 //! Which loops will hunt: modes of the closed loops of controllers, sensors, actuators and network, and the gains
-//! at which the first of them stops decaying.
+//! at which the first of them stops decaying. What lies between outputs and measured values: `answers.rs`.
 
+use super::answers::{Answers, Link, answers, is_set_point};
 use super::chain::Seen;
 use super::law::Law;
-use super::loops::Loops;
+use super::loops::{Between, Loops};
 use super::modes::Found;
 use super::periodic::{PeriodicLoops, Ticks};
-use super::response::{StepResponse, responses};
-use crate::channels::{self, Source};
+use super::water::Late;
+use crate::channels::Source;
 use crate::error::RunError;
-use crate::gains::{Gains, measured, reach};
+use crate::gains::reach;
 use crate::plan::{Plan, PlannedController};
 use crate::simulation::Simulation;
 use crate::state::State;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
-use anergy_network::hydraulics::linearize::Valves;
 use nalgebra::DMatrix;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -96,8 +96,6 @@ pub fn hunting(simulation: &mut Simulation) -> Result<Hunting, RunError> {
         let law = Law::of(plan, state, planned, planned.interval.as_s());
         let open = if law.held.iter().all(|held| *held) {
             Some("its output is at a limit")
-        } else if planned.acts_on.iter().any(|signal| is_set_point(plan, *signal)) {
-            Some("it acts on the set point of another controller, which is not analysed")
         } else if law.is_idle() {
             Some("its output does not follow what it measures")
         } else {
@@ -118,70 +116,36 @@ pub fn hunting(simulation: &mut Simulation) -> Result<Hunting, RunError> {
             closed.push(Closed { controller, law });
         }
     }
-    let answers = answers(simulation, &closed)?;
-    for group in groups(plan, &closed, &answers.gains) {
+    drop_without_follower(plan, &mut closed, &mut hunting);
+    let controllers: Vec<usize> = closed.iter().map(|c| c.controller).collect();
+    let answers = match answers(simulation, &controllers)? {
+        Ok(answers) => answers,
+        Err(reason) => {
+            let margins = &mut hunting.controllers;
+            controllers.iter().for_each(|&i| margins[i].open = Some(reason));
+            return Ok(hunting);
+        }
+    };
+    for group in groups(plan, &closed, &answers) {
         judge(plan, simulation.state(), &closed, &group, &answers, &mut hunting);
     }
     hunting.modes.sort_by(|a, b| b.growth_per_s.total_cmp(&a.growth_per_s));
     Ok(hunting)
 }
 
-/// Whether a signal is what another controller is to hold.
-fn is_set_point(plan: &Plan, signal: SignalId) -> bool {
-    plan.controllers.iter().any(|planned| planned.set_points.contains(&signal.index()))
-}
-
-/// What measured values (rows) do after a change of an output.
-struct Answers {
-    /// Of the water, or what is left at last.
-    gains: DMatrix<f64>,
-    /// Where temperatures take part: value, output, response.
-    slow: Vec<(usize, usize, StepResponse)>,
-}
-
-/// Answers of the measured values to the outputs of closed loops.
-fn answers(simulation: &mut Simulation, closed: &[Closed]) -> Result<Answers, RunError> {
-    let plan = simulation.plan().clone();
-    let planned = || closed.iter().map(|c| &plan.controllers[c.controller]);
-    let sources: Vec<(Source, Option<Source>)> =
-        planned().flat_map(|c| &c.measures).map(|source| measured(&plan, *source)).collect();
-    let outputs: Vec<_> =
-        planned().flat_map(|c| c.acts_on.iter().copied().zip(c.limits.iter().copied())).collect();
-    let mut gains = DMatrix::zeros(sources.len(), outputs.len());
-    let mut open = Vec::new();
-    let state = simulation.state();
-    let mut network = Gains::new(&plan, state, Valves::Stay)
-        .map_err(|error| crate::simulation::named(&plan, state.time, &error))?;
-    let all: Vec<Source> =
-        sources.iter().flat_map(|(of, minus)| [*of, minus.unwrap_or(*of)]).collect();
-    for (j, (signal, _)) in outputs.iter().enumerate() {
-        let known = reach(&plan, state, *signal)
-            .map(|reach| network.column(&plan, state, &reach, &all))
-            .unwrap_or_else(|| vec![None; all.len()]);
-        for (i, (_, minus)) in sources.iter().enumerate() {
-            let less = if minus.is_some() { known[2 * i + 1] } else { Some(0.0) };
-            match known[2 * i].zip(less) {
-                Some((gain, less)) => gains[(i, j)] = gain - less,
-                None => open.push((i, j)),
-            }
-        }
-    }
-    let mut slow = Vec::new();
-    if !open.is_empty() {
-        let read = |simulation: &Simulation| -> Vec<f64> {
-            let value = |of| channels::value(simulation.plan(), simulation.state(), of);
-            sources.iter().map(|(of, minus)| value(*of) - minus.map_or(0.0, value)).collect()
+/// A controller whose only outputs are set points of controllers with open loops has one too.
+fn drop_without_follower(plan: &Plan, closed: &mut Vec<Closed>, hunting: &mut Hunting) {
+    loop {
+        let acts = |c: &Closed| {
+            plan.controllers[c.controller].acts_on.iter().any(|signal| {
+                is_set_point(plan, *signal)
+                    .is_none_or(|(held, _)| closed.iter().any(|other| other.controller == held))
+            })
         };
-        let found = responses(simulation, &outputs, &read)?;
-        for (i, j) in open {
-            let response = found[j][i].clone();
-            gains[(i, j)] = response.settled();
-            if response.settled() != 0.0 || response.time_s() > 0.0 {
-                slow.push((i, j, response));
-            }
-        }
+        let Some(idle) = closed.iter().position(|c| !acts(c)) else { return };
+        let reason = "the controller whose set point it moves has an open loop";
+        hunting.controllers[closed.remove(idle).controller].open = Some(reason);
     }
-    Ok(Answers { gains, slow })
 }
 
 /// Places of each closed controller's measured values and outputs.
@@ -199,8 +163,12 @@ fn places(plan: &Plan, closed: &[Closed]) -> Vec<(std::ops::Range<usize>, std::o
 }
 
 /// Closed loops that act on each other.
-fn groups(plan: &Plan, closed: &[Closed], gains: &DMatrix<f64>) -> Vec<Vec<usize>> {
+fn groups(plan: &Plan, closed: &[Closed], answers: &Answers) -> Vec<Vec<usize>> {
     let places = places(plan, closed);
+    let gains = &answers.gains;
+    let linked = |i: usize, j: usize| {
+        answers.links.iter().any(|link| [(i, j), (j, i)].contains(&(link.from, link.to)))
+    };
     let strength = |i: usize, j: usize| {
         let block = gains
             .view((places[i].0.start, places[j].1.start), (places[i].0.len(), places[j].1.len()));
@@ -214,7 +182,7 @@ fn groups(plan: &Plan, closed: &[Closed], gains: &DMatrix<f64>) -> Vec<Vec<usize
     for i in 0..closed.len() {
         for j in 0..i {
             let (a, b) = (group_of[i], group_of[j]);
-            if a != b && coupled(i, j) {
+            if a != b && (linked(i, j) || coupled(i, j)) {
                 group_of.iter_mut().filter(|group| **group == a).for_each(|group| *group = b);
             }
         }
@@ -230,10 +198,7 @@ fn groups(plan: &Plan, closed: &[Closed], gains: &DMatrix<f64>) -> Vec<Vec<usize
 struct Group<'a> {
     planned: Vec<&'a PlannedController>,
     laws: Vec<Law>,
-    gains: DMatrix<f64>,
-    seen: Vec<Seen>,
-    lags_s: Vec<f64>,
-    slow: Vec<(usize, usize, StepResponse)>,
+    between: Between,
 }
 
 impl<'a> Group<'a> {
@@ -261,29 +226,31 @@ impl<'a> Group<'a> {
             _ => Seen { lag_s: 0.0, dead_s: 0.0 },
         };
         let lag = |signal: &SignalId| reach(plan, state, *signal).map_or(0.0, |reach| reach.lag_s);
-        Self {
-            gains: DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
-                answers.gains[(rows[i], columns[j])]
-            }),
+        let part = |gains: &DMatrix<f64>| {
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| gains[(rows[i], columns[j])])
+        };
+        let late = answers.late.iter().map(|late| Late { gains: part(&late.gains), ..*late });
+        let links = answers.links.iter().filter_map(|link| {
+            let member = |one: usize| place(members, one);
+            let (from, to) = (member(link.from)?, member(link.to)?);
+            Some(Link { output: place(&columns, link.output)?, from, to, ..*link })
+        });
+        let between = Between {
+            gains: part(&answers.gains),
+            late: late.filter(|late| late.gains.amax() > 0.0).collect(),
             slow: slow.collect(),
             seen: planned.iter().flat_map(|c| &c.measures).map(sensor).collect(),
             lags_s: planned.iter().flat_map(|c| &c.acts_on).map(lag).collect(),
-            laws: members.iter().map(|&i| closed[i].law.clone()).collect(),
-            planned,
-        }
+            links: links.collect(),
+        };
+        let laws = members.iter().map(|&i| closed[i].law.clone()).collect();
+        Self { planned, laws, between }
     }
 
     /// The loops, where all controllers update together; the interval is 0 where they are continuous.
     fn together(&self) -> Loops {
         let interval = self.planned.iter().map(|c| c.interval).max().unwrap_or(Time::ZERO);
-        Loops::new(
-            self.laws.clone(),
-            self.gains.clone(),
-            &self.seen,
-            &self.lags_s,
-            interval.as_s(),
-            self.slow.clone(),
-        )
+        Loops::new(self.laws.clone(), self.between.clone(), interval.as_s())
     }
 
     /// Whether they do.
@@ -292,13 +259,19 @@ impl<'a> Group<'a> {
         self.planned.iter().all(|c| timing(c) == timing(self.planned[0]))
     }
 
-    /// What the loops do; `None` where they are too many with different timing.
-    fn analyse(&self, plan: &Plan, state: &State) -> Option<Found> {
+    /// What the loops do, or why that is not known.
+    fn analyse(&self, plan: &Plan, state: &State) -> Result<Found, &'static str> {
         if self.is_together() {
-            return Some(super::modes::analyse(&self.together()));
+            return Ok(super::modes::analyse(&self.together()));
         }
-        if !self.slow.is_empty() {
-            return None;
+        if !self.between.late.is_empty() {
+            return Err(
+                "its group updates at different times, which is not analysed for water with inertia",
+            );
+        }
+        let many = "its group updates at too many different times to be analysed";
+        if !self.between.slow.is_empty() {
+            return Err(many);
         }
         // What is continuous updates at every step of a run.
         let every = |c: &PlannedController| {
@@ -320,12 +293,13 @@ impl<'a> Group<'a> {
                 .iter()
                 .map(|c| Ticks { every: every(c) / tick, first: first(c) / tick })
                 .collect(),
-            gains: self.gains.clone(),
-            seen: self.seen.clone(),
-            actuator_lags_s: self.lags_s.clone(),
+            gains: self.between.gains.clone(),
+            seen: self.between.seen.clone(),
+            actuator_lags_s: self.between.lags_s.clone(),
+            links: self.between.links.clone(),
             tick_s: Time(tick).as_s(),
         };
-        loops.analyse()
+        loops.analyse().ok_or(many)
     }
 }
 
@@ -339,12 +313,14 @@ fn judge(
     hunting: &mut Hunting,
 ) {
     let whole = Group::new(plan, state, closed, group, answers);
-    let Some(found) = whole.analyse(plan, state) else {
-        for &i in group {
-            hunting.controllers[closed[i].controller].open =
-                Some("its group updates at too many different times to be analysed");
+    let found = match whole.analyse(plan, state) {
+        Ok(found) => found,
+        Err(reason) => {
+            for &i in group {
+                hunting.controllers[closed[i].controller].open = Some(reason);
+            }
+            return;
         }
-        return;
     };
     // With different timing, shapes are those of the loops as if they updated together.
     let whole = whole.together();
@@ -378,7 +354,7 @@ fn judge(
             .map(|limit| TAU / limit.omega_rad_s);
         margin.relative_gain = relative.as_ref().map(|relative| relative[i]);
         let alone = Group::new(plan, state, closed, &[k], answers).analyse(plan, state);
-        let limit = alone.and_then(|alone| alone.limit);
+        let limit = alone.ok().and_then(|alone| alone.limit);
         margin.critical_gain_alone = limit.map(|limit| margin.gain * limit.factor);
     }
 }

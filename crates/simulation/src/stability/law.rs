@@ -1,6 +1,6 @@
 //! A controller at rest as a linear law, found by differences of its own update.
 //!
-//! **Equation** sampled: `x' = A x + B y`, `u = C x + D y`, x' the state after an update; continuous:
+//! **Equation** sampled: `x' = A x + B y`, `u = C x + D y` (and the same with B_r, D_r for the set points), x' the state after an update; continuous:
 //! `dx/dt = A x + B y` from short updates, `C` and `D` from updates that take no time. **Assumptions** the
 //! update is smooth near rest; within a dead band nothing happens, so the law is taken beside it, where
 //! something does.
@@ -8,7 +8,7 @@
 use crate::plan::{Plan, PlannedController};
 use crate::state::State;
 use anergy_control::controller::{Balance, Inputs};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// An update this short is a continuous one, s.
 const SHORT_S: f64 = 1e-2;
@@ -29,6 +29,9 @@ pub(super) struct Law {
     pub b: DMatrix<f64>,
     pub c: DMatrix<f64>,
     pub d: DMatrix<f64>,
+    /// Over set points.
+    pub b_set: DMatrix<f64>,
+    pub d_set: DMatrix<f64>,
     /// Outputs that are at a limit, and stay there.
     pub held: Vec<bool>,
 }
@@ -37,33 +40,40 @@ pub(super) struct Law {
 struct Bench<'a> {
     planned: &'a PlannedController,
     measured: Vec<f64>,
-    set_points: &'a [f64],
+    set_points: Vec<f64>,
     state: Vec<f64>,
     outputs: Vec<f64>,
 }
 
+/// What is moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moved {
+    State(usize),
+    Measured(usize),
+    SetPoint(usize),
+}
+
 impl Bench<'_> {
-    /// State and outputs after an update.
-    fn update(&self, dt_s: f64, measured: &[f64], state: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let (mut state, mut outputs) = (state.to_vec(), self.outputs.clone());
-        let inputs = Inputs { measured, set_points: self.set_points, limits: &self.planned.limits };
+    /// State and outputs after an update with something moved by a step.
+    fn update(&self, dt_s: f64, moved: Moved, step: f64) -> (Vec<f64>, Vec<f64>) {
+        let (mut state, mut outputs) = (self.state.clone(), self.outputs.clone());
+        let (mut measured, mut set_points) = (self.measured.clone(), self.set_points.clone());
+        match moved {
+            Moved::State(i) => state[i] += step,
+            Moved::Measured(i) => measured[i] += step,
+            Moved::SetPoint(i) => set_points[i] += step,
+        }
+        let (measured, set_points) = (&measured[..], &set_points[..]);
+        let inputs = Inputs { measured, set_points, limits: &self.planned.limits };
         // What cannot answer has no law.
         let _ = self.planned.controller.update(dt_s, &inputs, &mut state, &mut outputs);
         (state, outputs)
     }
 
-    /// Central differences of state and outputs over measured value `i`, or over state `i`.
-    fn slopes(&self, dt_s: f64, i: usize, step: f64, of_state: bool) -> (Vec<f64>, Vec<f64>) {
-        let at = |sign: f64| {
-            let (mut measured, mut state) = (self.measured.clone(), self.state.clone());
-            if of_state {
-                state[i] += sign * step;
-            } else {
-                measured[i] += sign * step;
-            }
-            self.update(dt_s, &measured, &state)
-        };
-        let ((x1, u1), (x0, u0)) = (at(1.0), at(-1.0));
+    /// Central differences of state and outputs.
+    fn slopes(&self, dt_s: f64, moved: Moved, step: f64) -> (Vec<f64>, Vec<f64>) {
+        let ((x1, u1), (x0, u0)) =
+            (self.update(dt_s, moved, step), self.update(dt_s, moved, -step));
         let slope = |high: Vec<f64>, low: Vec<f64>| -> Vec<f64> {
             high.iter().zip(low).map(|(high, low)| (high - low) / (2.0 * step)).collect()
         };
@@ -82,7 +92,7 @@ impl Law {
         planned.controller.balance(&inputs, &outputs, &mut balance);
         let mut own = planned.controller.initial_state();
         planned.controller.rest(&inputs, &outputs, &mut own);
-        let set_points = &state.signals[planned.set_points.clone()];
+        let set_points = state.signals[planned.set_points.clone()].to_vec();
         let held = (0..outputs.len()).map(|k| {
             let (min, max) = planned.controller.output_limits(k, planned.limits[k]);
             let range = if (max - min).is_finite() { max - min } else { 1.0 };
@@ -105,6 +115,7 @@ impl Law {
         for (k, _) in held.iter().enumerate().filter(|(_, held)| **held) {
             law.c.row_mut(k).fill(0.0);
             law.d.row_mut(k).fill(0.0);
+            law.d_set.row_mut(k).fill(0.0);
         }
         Self { held, ..law }
     }
@@ -123,6 +134,17 @@ impl Law {
         through.map_or_else(|| complex(&self.d), |through| through + complex(&self.d))
     }
 
+    /// Outputs over a set point at a value of `s`, or of `z` where it is sampled.
+    pub fn follows(&self, p: Complex<f64>, set_point: usize) -> DVector<Complex<f64>> {
+        let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex::new(entry, 0.0));
+        let column = |matrix: &DMatrix<f64>| matrix.column(set_point).map(|x| Complex::new(x, 0.0));
+        let n = self.a.nrows();
+        let resolvent = DMatrix::from_diagonal_element(n, n, p) - complex(&self.a);
+        let answer = resolvent.lu().solve(&column(&self.b_set));
+        let through = answer.map(|answer| complex(&self.c) * answer);
+        through.map_or_else(|| column(&self.d_set), |through| through + column(&self.d_set))
+    }
+
     /// Whether nothing of it reaches its outputs.
     pub fn is_idle(&self) -> bool {
         self.c.iter().chain(self.d.iter()).all(|entry| *entry == 0.0)
@@ -133,38 +155,42 @@ impl Law {
 impl Bench<'_> {
     fn law(&self, interval_s: f64, scale: f64) -> Law {
         let (n, n_in, n_out) = (self.state.len(), self.measured.len(), self.outputs.len());
+        let n_set = self.set_points.len();
         let mut law = Law {
             a: DMatrix::zeros(n, n),
             b: DMatrix::zeros(n, n_in),
             c: DMatrix::zeros(n_out, n),
             d: DMatrix::zeros(n_out, n_in),
+            b_set: DMatrix::zeros(n, n_set),
+            d_set: DMatrix::zeros(n_out, n_set),
             held: Vec::new(),
         };
         let continuous = interval_s <= 0.0;
-        for k in 0..n + n_in {
-            let of_state = k < n;
-            let i = if of_state { k } else { k - n };
-            let step = if of_state {
-                STATE_DIFFERENCE * self.state[i].abs().clamp(1e-2, 1e6)
-            } else {
-                DIFFERENCE * scale
+        let all = (0..n).map(Moved::State).chain((0..n_in).map(Moved::Measured));
+        for moved in all.chain((0..n_set).map(Moved::SetPoint)) {
+            let step = match moved {
+                Moved::State(i) => STATE_DIFFERENCE * self.state[i].abs().clamp(1e-2, 1e6),
+                Moved::Measured(_) | Moved::SetPoint(_) => DIFFERENCE * scale,
             };
             let (mut x, mut u) =
-                self.slopes(if continuous { SHORT_S } else { interval_s }, i, step, of_state);
+                self.slopes(if continuous { SHORT_S } else { interval_s }, moved, step);
             if continuous {
-                u = self.slopes(0.0, i, step, of_state).1;
-                if of_state {
+                u = self.slopes(0.0, moved, step).1;
+                if let Moved::State(i) = moved {
                     x[i] = exact(x[i], 1.0) - 1.0;
                 }
                 x.iter_mut().for_each(|slope| *slope /= SHORT_S);
-            } else if of_state {
+            } else if let Moved::State(i) = moved {
                 // An integrator keeps its state whole.
                 x[i] = exact(x[i], 1.0);
             }
             // What a state that is no number remembers says nothing.
             let (x, u) = (x.into_iter().map(number), u.into_iter().map(number));
-            let (left, right) =
-                if of_state { (&mut law.a, &mut law.c) } else { (&mut law.b, &mut law.d) };
+            let (left, right, i) = match moved {
+                Moved::State(i) => (&mut law.a, &mut law.c, i),
+                Moved::Measured(i) => (&mut law.b, &mut law.d, i),
+                Moved::SetPoint(i) => (&mut law.b_set, &mut law.d_set, i),
+            };
             x.enumerate().for_each(|(row, slope)| left[(row, i)] = slope);
             u.enumerate().for_each(|(row, slope)| right[(row, i)] = slope);
         }

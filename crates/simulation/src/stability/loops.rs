@@ -3,20 +3,49 @@
 //! **Equation** outputs `u = C(s) y`, readings `y = P(s) u`, `P_ij = S_i(s) G_ij A_j(s)` with the gains G of the
 //! network, the lags A of the actuators and the sensors S (`chain.rs`); the loops have a mode wherever
 //! `det(1 + k L(s)) = 0`, `L = -C P`, k = 1; with k all controllers of the group are scaled together. Sampled
-//! controllers of one interval h: the same in `z = exp(s h)`, exact at the samples. **Sources**
-//! `skogestad2005`.
+//! controllers of one interval h: the same in `z = exp(s h)`, exact at the samples. Water with inertia: G in parts
+//! behind lags (`water.rs`). An output u_j that is the set point of another controller: that answers with `F(s) u_j`,
+//! `L = -C P - F`; sampled, one that updates later sees it at once, one that updates earlier an interval later.
+//! **Sources** `skogestad2005`.
 
+use super::answers::Link;
 use super::chain::{Chains, Seen};
 use super::law::Law;
 use super::response::StepResponse;
+use super::water::Late;
 use nalgebra::{Complex, DMatrix, DVector};
+
+/// What lies between the outputs and the measured values of some controllers, in their order.
+#[derive(Debug, Clone)]
+pub(super) struct Between {
+    /// Gains of measured values (rows) over outputs, settled.
+    pub gains: DMatrix<f64>,
+    /// What of them comes behind a lag of the water.
+    pub late: Vec<Late>,
+    /// Responses in which temperatures take part, in place of gains: value, output.
+    pub slow: Vec<(usize, usize, StepResponse)>,
+    /// Sensor of each measured value.
+    pub seen: Vec<Seen>,
+    /// Time constant of each of the two lags of each actuator, s.
+    pub lags_s: Vec<f64>,
+    /// Outputs that are set points.
+    pub links: Vec<Link>,
+}
+
+/// Gains with the chains that they have.
+struct Way {
+    chains: Chains,
+    gains: DMatrix<f64>,
+}
 
 /// The loops of a group.
 pub(super) struct Loops {
     pub laws: Vec<Law>,
     /// Gains of measured values (rows) over outputs, in the order of the controllers.
     pub gains: DMatrix<f64>,
-    chains: Chains,
+    /// What comes at once, then what comes behind the water.
+    ways: Vec<Way>,
+    links: Vec<Link>,
     /// Interval of all controllers, s; 0 where they are continuous.
     pub interval_s: f64,
     /// Responses in which temperatures take part, in place of gains: value, output.
@@ -28,18 +57,16 @@ pub(super) struct Loops {
 }
 
 impl Loops {
-    /// Loops of `laws` with one sensor for each measured value and one actuator lag for each output.
-    pub fn new(
-        laws: Vec<Law>,
-        gains: DMatrix<f64>,
-        seen: &[Seen],
-        actuator_lags_s: &[f64],
-        interval_s: f64,
-        slow: Vec<(usize, usize, StepResponse)>,
-    ) -> Self {
-        let chains = Chains::new(actuator_lags_s, seen, interval_s);
+    /// Loops of `laws` with what lies between; the interval is 0 where they are continuous.
+    pub fn new(laws: Vec<Law>, between: Between, interval_s: f64) -> Self {
+        let Between { gains, late, slow, seen, lags_s, links } = between;
         let owner = laws.iter().enumerate().flat_map(|(i, law)| vec![i; law.c.nrows()]).collect();
-        let mut loops = Self { laws, gains, chains, interval_s, slow, owner, uniform: None };
+        let chains = |water_lag_s| Chains::new(&lags_s, &seen, water_lag_s, interval_s);
+        let at_once = late.iter().fold(gains.clone(), |rest, late| rest - &late.gains);
+        let mut ways = vec![Way { chains: chains(0.0), gains: at_once }];
+        let late = late.into_iter();
+        ways.extend(late.map(|late| Way { chains: chains(late.lag_s), gains: late.gains }));
+        let mut loops = Self { laws, gains, ways, links, interval_s, slow, owner, uniform: None };
         loops.uniform = loops.uniform_gains();
         loops
     }
@@ -52,7 +79,8 @@ impl Loops {
     /// The gain of each controller where they differ in nothing else.
     fn uniform_gains(&self) -> Option<Vec<f64>> {
         let single = |law: &Law| law.a.nrows() == 1 && law.c.nrows() == 1 && law.b.ncols() == 1;
-        if !self.chains.alike() || !self.slow.is_empty() || !self.laws.iter().all(single) {
+        let plain = self.ways.len() == 1 && self.links.is_empty() && self.slow.is_empty();
+        if !plain || !self.chains().alike() || !self.laws.iter().all(single) {
             return None;
         }
         let parts = |law: &Law| (law.a[(0, 0)], law.c[(0, 0)] * law.b[(0, 0)], law.d[(0, 0)]);
@@ -71,18 +99,28 @@ impl Loops {
 
     /// The law and chain that all loops have where they are uniform, without gains.
     pub fn common(&self, s: Complex<f64>) -> Complex<f64> {
-        -self.laws[0].transfer(self.chains.variable(s))[(0, 0)] * self.chains.one(0, 0, s)
+        -self.laws[0].transfer(self.chains().variable(s))[(0, 0)] * self.chains().one(0, 0, s)
+    }
+
+    /// The chains of what comes at once.
+    fn chains(&self) -> &Chains {
+        &self.ways[0].chains
     }
 
     /// `L(s)`.
     pub fn matrix(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
         let n = self.len();
-        let mut plant = self.chains.plant(s, &self.gains);
+        let mut plant = self.chains().plant(s, &self.ways[0].gains);
+        for way in &self.ways[1..] {
+            plant += way.chains.plant(s, &way.gains);
+        }
         for (i, j, response) in &self.slow {
             plant[(*i, *j)] = self.slow_answer(*i, *j, response, s);
         }
-        let variable = self.chains.variable(s);
-        if self.laws.iter().all(|law| law.c.nrows() == 1 && law.b.ncols() == 1) {
+        let variable = self.chains().variable(s);
+        if self.links.is_empty()
+            && self.laws.iter().all(|law| law.c.nrows() == 1 && law.b.ncols() == 1)
+        {
             let laws: Vec<_> =
                 self.laws.iter().map(|law| -law.transfer(variable)[(0, 0)]).collect();
             for mut column in plant.column_iter_mut() {
@@ -100,6 +138,14 @@ impl Loops {
             row += n_out;
             seen += n_in;
         }
+        for link in &self.links {
+            let answer = self.laws[link.to].follows(variable, link.set_point);
+            let late = if self.interval_s > 0.0 && link.from > link.to { variable } else { one() };
+            let first = self.owner.iter().position(|owner| *owner == link.to).unwrap_or(0);
+            for (k, entry) in answer.iter().enumerate() {
+                matrix[(first + k, link.output)] -= entry / late;
+            }
+        }
         matrix
     }
 
@@ -109,12 +155,15 @@ impl Loops {
         let before = &self.laws[..law];
         let first: usize = before.iter().map(|law| law.c.nrows()).sum();
         let seen: usize = before.iter().map(|law| law.b.ncols()).sum();
-        let transfer = self.laws[law].transfer(self.chains.variable(s));
+        let transfer = self.laws[law].transfer(self.chains().variable(s));
         let answer = |value: usize| {
             let slow = self.slow.iter().find(|(of, to, _)| (*of, *to) == (value, i));
             match slow {
                 Some((_, _, response)) => self.slow_answer(value, i, response, s),
-                None => self.chains.one(value, i, s) * self.gains[(value, i)],
+                None => {
+                    let ways = self.ways.iter();
+                    ways.map(|way| way.chains.one(value, i, s) * way.gains[(value, i)]).sum()
+                }
             }
         };
         let row = transfer.row(i - first);
@@ -132,7 +181,7 @@ impl Loops {
         // Between two samples the command is held: late by half of the interval.
         let x = s * self.interval_s;
         let hold = if x.norm() < 1e-8 { Complex::new(1.0, 0.0) } else { (1.0 - (-x).exp()) / x };
-        self.chains.continuous(i, j, s) * hold * response.at(s)
+        self.chains().continuous(i, j, s) * hold * response.at(s)
     }
 
     /// `1 + k L(s)`.
@@ -147,10 +196,10 @@ impl Loops {
     /// Times between which its frequencies lie, s: the sum of all lags of the slowest chain, the fastest.
     pub fn times_s(&self) -> (f64, f64) {
         let slow = self.slow.iter().map(|(i, j, response)| {
-            let t = response.time_s() + self.chains.total_s(*i, *j);
+            let t = response.time_s() + self.chains().total_s(*i, *j);
             (t, t)
         });
-        let all = std::iter::once(self.chains.times_s()).chain(slow);
+        let all = self.ways.iter().map(|way| way.chains.times_s()).chain(slow);
         let (min, max) = all
             .fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t.0), max.max(t.1)));
         if max > 0.0 { (min.max(1e-3 * max), max) } else { (1.0, 1.0) }
@@ -158,7 +207,7 @@ impl Loops {
 
     /// Longest time that passes before anything is answered, s.
     pub fn dead_s(&self) -> f64 {
-        self.chains.dead_s()
+        self.chains().dead_s()
     }
 
     /// Largest frequency that means something, rad/s.
@@ -200,4 +249,8 @@ impl Loops {
         let inverse = self.gains.clone().try_inverse()?;
         Some(self.gains.component_mul(&inverse.transpose()).diagonal())
     }
+}
+
+fn one() -> Complex<f64> {
+    Complex::new(1.0, 0.0)
 }

@@ -6,6 +6,7 @@
 //! controllers count as sampled at the step of the run. **Validity** water only: no temperatures in the loops.
 //! **Sources** `astrom2011` (lifting of multirate systems).
 
+use super::answers::Link;
 use super::chain::Seen;
 use super::law::Law;
 use super::modes::{Found, Limit, Root};
@@ -35,6 +36,8 @@ pub(super) struct PeriodicLoops {
     pub gains: DMatrix<f64>,
     pub seen: Vec<Seen>,
     pub actuator_lags_s: Vec<f64>,
+    /// Outputs that are set points.
+    pub links: Vec<Link>,
     /// Common interval, s.
     pub tick_s: f64,
 }
@@ -204,8 +207,13 @@ impl PeriodicLoops {
                     &state[layout.controllers[c]..layout.controllers[c] + n],
                 );
                 let y = DVector::from_fn(n_in, |k, _| reading(state, seen + k));
-                let u = &law.c * &x + &law.d * &y;
-                let x = &law.a * x + &law.b * y;
+                let mut u = &law.c * &x + &law.d * &y;
+                let mut x = &law.a * x + &law.b * y;
+                for link in self.links.iter().filter(|link| link.to == c) {
+                    let given = state[layout.outputs + 3 * link.output];
+                    u += law.d_set.column(link.set_point) * given;
+                    x += law.b_set.column(link.set_point) * given;
+                }
                 for k in 0..n {
                     state[layout.controllers[c] + k] = x[k];
                 }
