@@ -269,6 +269,29 @@ fn houses_with_two_pipes() {
     assert_eq!(seen, [true; 2], "charged and discharged");
 }
 
+#[test]
+fn sf1_with_its_booster_station() {
+    // The numbers of the README, kWh of the week; 20 degC of the grid become up to 68 degC in the storage.
+    let path = anergy_tests::workspace().join("examples/laboratory-sf1/booster.toml");
+    let mut simulation = simulation(&std::fs::read_to_string(path).unwrap());
+    advance(&mut simulation, 7.0 * 86_400.0, 60.0);
+    let balances = Balances::of(&simulation);
+    assert!(balances.units_error() < 1e-9, "{balances:?}");
+    assert_eq!(discomfort(&simulation, "sf1"), (0.0, 0.0));
+    for (output, kwh) in [
+        ("chp.heat_j", 723.0),
+        ("boiler.heat_j", 186.0),
+        ("bhpts.heat_j", 183.0),
+        ("bhpts.electric_j", 67.5),
+    ] {
+        let value = get(&simulation, &format!("sf1.{output}")) / KWH;
+        assert!((value - kwh).abs() < 0.02 * kwh, "{output}: {value}, not {kwh}");
+    }
+    let tripped = simulation.take_events().filter(|event| event.kind == "tripped").count();
+    assert_eq!(tripped, 0);
+    assert_eq!(get(&simulation, "sf1.bhpts.exchanger_s"), 0.0);
+}
+
 fn ring(file: &str, step_s: f64) -> Simulation {
     let path = anergy_tests::workspace().join("examples/laboratory-ring").join(file);
     let text = std::fs::read_to_string(path).unwrap();
