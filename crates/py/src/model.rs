@@ -16,8 +16,9 @@ use anergy_simulation::document;
 use anergy_simulation::model;
 use anergy_simulation::overlay::Change;
 use anergy_simulation::run::RunOptions;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::path::{Path, PathBuf};
 
 /// A network with its prosumers, controllers and inputs.
@@ -43,6 +44,15 @@ pub struct Model {
 
 #[pymethods]
 impl Model {
+    /// Refuses: a model is read or built.
+    #[new]
+    #[pyo3(signature = (*_args, **_fields))]
+    fn refuse(_args: &Bound<'_, PyTuple>, _fields: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Err(PyTypeError::new_err(
+            "a Model comes from Model.from_file(path), Model.from_toml(text), Model.from_dict(dict) or Grid(...).model()",
+        ))
+    }
+
     /// Reads a model file (TOML).
     ///
     /// Parameters

@@ -4,7 +4,7 @@ use crate::{convert, errors};
 use anergy_core::recorder::{Channel, Event, Recording, RunHeader, Severity};
 use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyIterator, PyList, PyTuple};
 use std::collections::HashMap;
@@ -72,6 +72,15 @@ pub(crate) fn python<'py>(
 
 #[pymethods]
 impl RunResult {
+    /// Refuses: a run makes it.
+    #[new]
+    #[pyo3(signature = (*_args, **_fields))]
+    fn refuse(_args: &Bound<'_, PyTuple>, _fields: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Err(PyTypeError::new_err(
+            "a Result comes from model.simulate() or, recorded, from Result.from_file(path)",
+        ))
+    }
+
     /// Reads a recorded file (results.mcap), also of a run that was killed.
     ///
     /// Parameters

@@ -18,7 +18,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyList};
+use pyo3::types::{PyDict, PyFloat, PyList, PyTuple};
 use std::sync::Arc;
 
 /// A simulation stepped from outside, made by `Model.simulation`.
@@ -109,6 +109,15 @@ impl Simulation {
 
 #[pymethods]
 impl Simulation {
+    /// Refuses: a model makes it.
+    #[new]
+    #[pyo3(signature = (*_args, **_fields))]
+    fn refuse(_args: &Bound<'_, PyTuple>, _fields: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Err(PyTypeError::new_err(
+            "a Simulation comes from model.simulation(); model.simulate() runs at once and gives a Result",
+        ))
+    }
+
     /// Simulated time, s since the start.
     #[getter]
     fn time_s(&self) -> f64 {

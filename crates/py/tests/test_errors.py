@@ -134,3 +134,24 @@ def test_hierarchy():
     assert issubclass(anergy.Interrupted, KeyboardInterrupt)
     for name in ("ModelError", "RunError", "UnknownNameError", "OutOfRangeError", "RecordingError"):
         assert issubclass(getattr(anergy, name), anergy.AnergyError)
+
+
+@pytest.mark.parametrize(
+    ("call", "hint"),
+    [
+        (lambda: anergy.Model("street.toml"), r"Model.from_file\(path\)"),
+        (lambda: anergy.Simulation(None), r"model.simulation\(\)"),
+        (lambda: anergy.Result("results.mcap"), r"Result.from_file\(path\)"),
+    ],
+)
+def test_a_class_says_what_makes_it(call, hint):
+    with pytest.raises(TypeError, match=hint):
+        call()
+
+
+def test_names_of_other_packages_lead_to_ours():
+    with pytest.raises(AttributeError, match="'run'; Model.simulate runs a model"):
+        anergy.run  # noqa: B018
+    assert not hasattr(anergy, "load")
+    with pytest.raises(AttributeError, match="no attribute 'lod'$"):
+        anergy.lod  # noqa: B018

@@ -83,10 +83,22 @@ __all__ = [
 ]
 
 
+# What other packages call it.
+_ELSEWHERE = {
+    "run": "Model.simulate runs a model",
+    "simulate": "Model.simulate runs a model",
+    "solve": "Model.solve finds the steady state of a model",
+    "load": "Model.from_file reads a model, Result.from_file results",
+    "open": "Model.from_file reads a model, Result.from_file results",
+    "read": "Model.from_file reads a model, Result.from_file results",
+}
+
+
 def __getattr__(name: str) -> Any:
     # Its methods are made from the schema, which takes longer than the rest of the package.
     if name == "Grid":
         from anergy.grid import Grid
 
         return Grid
-    raise AttributeError(f"module 'anergy' has no attribute {name!r}")
+    hint = f"; {_ELSEWHERE[name]}" if name in _ELSEWHERE else ""
+    raise AttributeError(f"module 'anergy' has no attribute {name!r}{hint}")

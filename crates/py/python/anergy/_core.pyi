@@ -1,7 +1,7 @@
 # Docstrings are in src/*.rs; `python -m mypy.stubtest anergy` compares this file with them.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, SupportsFloat, SupportsIndex, TypeAlias, final, overload
+from typing import Any, Final, Literal, NoReturn, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -52,6 +52,7 @@ def _unknown_name(what: str, name: str, known: Sequence[str]) -> UnknownNameErro
 
 @final
 class Model:
+    def __new__(cls, *_args: NoReturn, **_fields: NoReturn) -> Model: ...
     @staticmethod
     def from_file(path: _Path) -> Model: ...
     @staticmethod
@@ -104,6 +105,7 @@ class Model:
 
 @final
 class Result:
+    def __new__(cls, *_args: NoReturn, **_fields: NoReturn) -> Result: ...
     @staticmethod
     def from_file(path: _Path) -> Result: ...
     def __getitem__(self, name: str, /) -> _Column: ...
@@ -177,6 +179,7 @@ class Snapshot:
 
 @final
 class Simulation:
+    def __new__(cls, *_args: NoReturn, **_fields: NoReturn) -> Simulation: ...
     @property
     def time_s(self) -> float: ...
     @property
