@@ -88,6 +88,11 @@ impl Candidate {
         self
     }
 
+    /// Whether an unknown is one of its parameters.
+    pub(crate) fn owns(&self, unknown: &Unknown) -> bool {
+        self.beside.iter().chain([&self.unknown]).any(|own| own.target == unknown.target)
+    }
+
     /// A coordinate with the strength of the effect times `a`.
     pub(crate) fn scaled(&self, coordinate: f64, a: f64) -> f64 {
         let unknown = &self.unknown;

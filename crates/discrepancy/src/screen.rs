@@ -132,7 +132,7 @@ impl Without<'_> {
     /// Change of the whitened readings by a candidate.
     fn changes(&self, candidate: &Candidate, coordinate: f64) -> Option<DVector<f64>> {
         let own = &candidate.unknown;
-        let kept = (0..self.unknowns.len()).filter(|&i| self.unknowns[i].target != own.target);
+        let kept = (0..self.unknowns.len()).filter(|&i| !candidate.owns(&self.unknowns[i]));
         let (mut unknowns, mut at): (Vec<Unknown>, Vec<f64>) =
             kept.map(|i| (self.unknowns[i].clone(), self.fit.at[i])).unzip();
         for beside in &candidate.beside {

@@ -17,7 +17,7 @@ use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::unknown::Unknown;
 use nalgebra::DVector;
-use wins::{STRAINS, WINS, wins};
+use wins::{STRAINS, WINS, adds, wins};
 
 /// The likelihood is taken to the power of one over this ...
 const TEMPERATURE: f64 = 1.0;
@@ -26,10 +26,10 @@ const TEMPERATURE: f64 = 1.0;
 const LOUD: f64 = 0.125;
 /// An effect that brings less than this is taken out again, nats.
 const KEEPS: f64 = 2.0;
-/// Evidence within which two effects are not told apart, nats.
+/// Evidence within which two effects are not told apart, nats ...
 const TOGETHER: f64 = 3.0;
-/// ... or this share of what the winner gains: no model is right to more than that.
-const NEARLY: f64 = 0.1;
+/// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
+const NEARLY: f64 = 0.15;
 /// Effects whose residuals on samples that were not fitted are so many times those of the best, and take away so much less
 /// of the discrepancy there, are refuted.
 const AS_WELL: (f64, f64) = (2.0, 0.25);
@@ -50,8 +50,10 @@ pub(crate) const DIFFERS: f64 = 1.3;
 const UNEXPLAINED: f64 = 1.6;
 /// A discrepancy is explained where an effect takes away this share of it.
 const EXPLAINED: f64 = 0.5;
-/// ... or leaves no more than this, standard deviations.
+/// ... or leaves no more than this, standard deviations, and foretells what was not fitted ...
 const LEAVES: f64 = 1.6;
+/// ... or takes away this share and foretells in nearly every block: that fronts leave more than their sigma is no second cause.
+const TAKES: f64 = 0.1;
 /// Whatever was found, more than this is left by another cause, standard deviations.
 const TOO_MUCH: f64 = 4.0;
 /// What comes so near the best one, nats, is fitted with care; at most so many.
@@ -190,7 +192,8 @@ impl<'a> Search<'a> {
                 }
             }
             let named = matches!(settled.verdict, Verdict::Named | Verdict::Class);
-            if !(named && round.findings.first().is_some_and(|f| wins(f, round.null_z))) {
+            let wins = |f: &Finding| wins(f, round.null_z) && adds(f, self.taken.len());
+            if !(named && round.findings.first().is_some_and(wins)) {
                 first = first.or_else(|| self.first(round));
                 break;
             }
@@ -201,7 +204,12 @@ impl<'a> Search<'a> {
             let is_head =
                 |f: &Finding| head.is_some_and(|h| (h.id, &h.component) == (f.id, &f.component));
             let k = round.findings.iter().position(is_head).unwrap_or(0);
+            let is_class = head.is_some();
             self.take(&round.tried[k], &round.findings[k..=k], &mut settled)?;
+            if is_class {
+                // It stands for the class.
+                settled.effects[0].probability = settled.class.iter().map(|f| f.probability).sum();
+            }
             self.step_back(&mut settled)?;
             watch.lap("step back");
             let (base, slopes, temperature) = started;
@@ -216,17 +224,22 @@ impl<'a> Search<'a> {
         Ok(settled)
     }
 
-    /// Effects that leave far too much are not the cause.
+    /// Effects that leave far too much are not the cause; nor do two sensors begin to drift at once where one cause of the plant may.
     fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let Some((unknowns, at)) = &settled.chosen else { return Ok(()) };
         let z = self.z(&self.experiment.readings(unknowns, at)?);
-        if z > TOO_MUCH {
+        let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
+        if z > TOO_MUCH || drifts > 1 {
             let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
             let names: Vec<String> = names.collect();
-            settled.because = format!(
-                "the best that was found, {}, leaves residuals of {z:.1} standard deviations",
-                names.join(" and ")
-            );
+            let best = format!("the best that was found, {}", names.join(" and "));
+            settled.because = if drifts > 1 {
+                format!(
+                    "{best}, would be {drifts} drifts or jumps of sensors: rather one cause of the plant that is not in the catalogue"
+                )
+            } else {
+                format!("{best}, leaves residuals of {z:.1} standard deviations")
+            };
             settled.verdict = Verdict::Unexplained;
             settled.effects.clear();
             settled.class.clear();
@@ -332,7 +345,8 @@ impl<'a> Search<'a> {
         tried.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         // Those that may win, or belong to its class, with all sensitivities renewed.
         let most = tried.first().map_or(0.0, |best| best.fit.log_evidence);
-        let near = CLOSE.max(2.0 * NEARLY * (most - null.log_evidence));
+        let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
+        let near = CLOSE.max(2.0 * together(most - null.log_evidence, least));
         let close = tried.partition_point(|t| t.fit.log_evidence > most - near).min(MOST_CLOSE);
         let thorough: Vec<Start> = tried.drain(..close).map(Start::again).collect();
         tried.extend(self.common().fits(&thorough, Care::Thorough));
@@ -375,6 +389,13 @@ impl<'a> Search<'a> {
 /// Logarithm of the odds of an effect so far from what is plausible, nats.
 fn prior(strain: f64) -> f64 {
     -2.0 * (strain / PLAUSIBLE).max(1.0).ln()
+}
+
+/// Nats within which effects are not told apart where the best one gains `gain` nats and leaves residuals of `z` standard
+/// deviations, of whose squares `1 - 1/z^2` are the error of the model.
+fn together(gain: f64, z: f64) -> f64 {
+    let wrong = 1.0 - 1.0 / z.max(1.0).powi(2);
+    TOGETHER.max(NEARLY * wrong * gain)
 }
 
 /// Squared residuals beyond those that noise explains.

@@ -64,7 +64,7 @@ impl Common<'_> {
     /// The fit from this share of the strength.
     fn fit_one(&self, start: &Start, share: f64, care: Care) -> Result<Tried, ExplainError> {
         let own: Vec<&Candidate> = start.candidates.iter().map(|&k| &self.all[k]).collect();
-        let taken = |unknown: &&Unknown| !own.iter().any(|c| c.unknown.target == unknown.target);
+        let taken = |unknown: &&Unknown| !own.iter().any(|c| c.owns(unknown));
         let mut unknowns: Vec<Unknown> = self.base.iter().filter(taken).cloned().collect();
         for candidate in &own {
             unknowns.extend(candidate.beside.iter().cloned());

@@ -29,8 +29,9 @@ const BESIDE: usize = 1;
 const GAP: f64 = 2.5;
 /// Seed of the first draw: the same data, the same answer.
 const SEED: u64 = 0x5eed;
-/// Least and largest jitter, s; between them it is equally distributed over an interval of the readings.
-const JITTER_S: (f64, f64) = (0.5, 1.0);
+/// Least and largest jitter, s, the largest that of a moment anywhere within a second before and after; between them it is equally
+/// distributed over an interval of the readings.
+const JITTER_S: (f64, f64) = (0.5, 0.577);
 /// What lies between two readings over how far they lie from the line between their neighbours.
 const BENT: f64 = 0.4;
 

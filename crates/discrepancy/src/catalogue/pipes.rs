@@ -18,6 +18,10 @@ const LOSS: f64 = 0.08 / ROOT3;
 const SURROUNDINGS_K: f64 = 0.5 / ROOT3;
 /// Tolerance of a pressure loss, relative: at most 2 %.
 const FRICTION: f64 = 0.02 / ROOT3;
+/// Tolerance of the heat transfer between water and wall, relative: laws of turbulent flow are right to 10 %. With a wall of
+/// capacity `R C` for water of capacity `C` it disperses by `u^2 R tau/(1 + R)^3` (the time of the film `tau`); at 0.8 m/s, `R = 0.3`
+/// and 2 s a tenth of 0.2 m2/s: as much as weak dispersion (P7), in which its flaws look like one.
+const FILM: f64 = 0.1;
 const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// Heat capacity of water, J/(m3 K).
 const WATER_J_M3_K: f64 = 4.1e6;
@@ -47,6 +51,10 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         if free("P2") && moves(0.0, LOSS) {
             let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, LOSS);
             all.push(Unknown { logarithmic: true, ..factor });
+        }
+        if pipe.wall == WallModel::Film && free("P1") && moves(LENGTH, 0.0) {
+            let film = Unknown::plain(effect_target("P1", component, "film_factor"), 0.0, FILM);
+            all.push(Unknown { logarithmic: true, ..film });
         }
         if pressure && free("P8") {
             let factor = Unknown::plain(effect_target("P8", component, "factor"), 0.0, FRICTION);

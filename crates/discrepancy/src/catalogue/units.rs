@@ -2,6 +2,7 @@
 
 use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
+use crate::sensors::Sensor;
 use crate::unknown::Unknown;
 
 /// Tolerance of the heat loss of a storage, relative.
@@ -12,8 +13,11 @@ const EFFICIENCY: f64 = 0.02;
 const MIXING: f64 = 0.7;
 /// Tolerance of the time that a start takes, relative.
 const START: f64 = 0.1;
-/// What the efficiency at part load may be off, relative: maps of a few loads are straight between them.
+/// What the efficiency at part load may be off, relative, without an effect: two standard deviations of it.
 const PART: f64 = 0.02;
+/// What the map of a heat pump is off at 20, 40 and 60 % of the load, relative, each for itself: it has a few loads and is straight
+/// between them.
+const MAP: f64 = 0.01;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
@@ -33,7 +37,21 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
             add("G1", "factor", EFFICIENCY);
             add("G3", "time_factor", START);
         }
+        if power && kind == AIR_SOURCE {
+            for field in ["factor_20", "factor_40", "factor_60"] {
+                add("G2", field, MAP);
+            }
+        }
     }
+}
+
+/// Whether a sensor measures the temperature of the water that leaves a generator.
+pub(super) fn at_outlet(experiment: &Experiment, sensor: &Sensor) -> bool {
+    let mut units = experiment.model.units.iter();
+    let own = units.find(|unit| {
+        sensor.signal.strip_prefix(unit.id.as_str()).is_some_and(|rest| rest == ".t_supply_k")
+    });
+    own.is_some_and(|unit| is_generator(unit.params.kind()))
 }
 
 fn is_generator(kind: &str) -> bool {

@@ -1,9 +1,9 @@
 //! The verdict of the first round.
 
-use super::wins::wins;
+use super::wins::{foretells, surely_foretells, wins};
 use super::{
-    BEYOND, EXPLAINED, LEAVES, NEARLY, PARALLEL, Round, Search, Settled, TOGETHER, UNEXPLAINED,
-    excess, prior,
+    BEYOND, DIFFERS, EXPLAINED, LEAVES, PARALLEL, Round, Search, Settled, TAKES, UNEXPLAINED,
+    excess, prior, together,
 };
 use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;
@@ -23,12 +23,11 @@ impl Search<'_> {
 /// `parallel` says whose sensitivities are those of the winner.
 fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
     let Some(winner) = findings.first().filter(|f| wins(f, null_z)) else { return Vec::new() };
+    let near = together(winner.evidence, winner.validation_z);
     let belongs = |(f, parallel): &(&Finding, &bool)| {
         let behind = winner.evidence - f.evidence;
         let refuted = f.probability == 0.0;
-        !refuted
-            && (behind < TOGETHER.max(NEARLY * winner.evidence)
-                || (behind < 2.0 * TOGETHER && **parallel))
+        !refuted && (behind < near || (behind < 2.0 * near && **parallel))
     };
     let mut class: Vec<Finding> =
         findings.iter().zip(parallel).filter(belongs).map(|(f, _)| f.clone()).collect();
@@ -84,7 +83,10 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
                 winner.id, winner.component, winner.beyond
             ),
         )
-    } else if explained < EXPLAINED && winner.validation_z > LEAVES {
+    } else if explained < EXPLAINED
+        && ((winner.validation_z > LEAVES && !(explained > TAKES && surely_foretells(winner)))
+            || (winner.validation_z > DIFFERS && !foretells(winner)))
+    {
         (
             Verdict::Unexplained,
             format!(
@@ -130,7 +132,7 @@ mod tests {
             beyond: 1.0,
             tolerated: false,
             within: false,
-            validation_z: 1.1,
+            validation_z: 1.0,
             reduction: 0.5,
             flags: Vec::new(),
             separates: "",
@@ -145,16 +147,15 @@ mod tests {
     fn a_class_is_what_is_near_or_parallel_and_not_refuted() {
         let findings =
             [finding("A", 30.0), finding("B", 28.0), finding("C", 25.0), finding("D", 23.0)];
-        // 3 nats, or 10 % of 30 = 3; parallel ones within 6.
+        // 3 nats; parallel ones within 6.
         assert_eq!(ids(&class(&findings, &[true, false, false, false], 3.0)), ["A", "B"]);
         assert_eq!(ids(&class(&findings, &[true, false, true, true], 3.0)), ["A", "B", "C"]);
         let refuted = Finding { probability: 0.0, ..finding("B", 28.0) };
         assert_eq!(ids(&class(&[finding("A", 30.0), refuted], &[true, true], 3.0)), ["A"]);
-        // 10 % of 300 = 30.
-        assert_eq!(
-            ids(&class(&[finding("A", 300.0), finding("B", 290.0)], &[true, false], 3.0)),
-            ["A", "B"]
-        );
+        // However much there is to explain; but 0.15 * 300 (1 - 1/2^2) = 34 nats where the best one leaves two standard deviations.
+        let loud = |z| Finding { validation_z: z, ..finding("A", 300.0) };
+        let of = |z| class(&[loud(z), finding("B", 290.0)], &[true, false], 3.0).len();
+        assert_eq!((of(1.0), of(2.0)), (1, 2));
         assert!(class(&[finding("A", 1.0)], &[true], 3.0).is_empty());
         // A drift within the class of its sensor is none.
         let tolerated = Finding { within: true, ..finding("A", 30.0) };
@@ -163,12 +164,16 @@ mod tests {
         assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
         assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);
         // 5^2/2 = 12.5 nats are all that a tolerance strained by five standard deviations can show.
-        let strained = |strain| Finding { tolerated: true, strain, ..finding("A", 12.0) };
-        assert_eq!(ids(&class(&[strained(5.0)], &[true], 0.7)), ["A"]);
-        assert!(class(&[strained(3.5)], &[true], 0.7).is_empty());
+        let strained = |strain| Finding { tolerated: true, strain, ..finding("A", 13.0) };
+        assert_eq!(ids(&class(&[strained(5.5)], &[true], 0.7)), ["A"]);
+        assert!(class(&[strained(4.5)], &[true], 0.7).is_empty());
+        // Loud, but not what was not fitted: none, but where a tolerance foretells as well.
+        let silent = |tolerated| Finding { tolerated, elpd: 1.0, ..finding("A", 30.0) };
+        assert!(class(&[silent(false)], &[true], 3.0).is_empty());
+        assert_eq!(ids(&class(&[silent(true)], &[true], 3.0)), ["A"]);
         // Another one that is more plausible, but not as sure, comes second.
-        let plausible = Finding { strain: 1.0, ..finding("B", 11.5) };
-        assert_eq!(ids(&class(&[strained(5.0), plausible], &[true, false], 0.7)), ["A", "B"]);
+        let plausible = Finding { strain: 1.0, ..finding("B", 12.5) };
+        assert_eq!(ids(&class(&[strained(5.5), plausible], &[true, false], 0.7)), ["A", "B"]);
     }
 
     #[test]
@@ -193,9 +198,15 @@ mod tests {
         let far = Finding { beyond: 3.5, ..good.clone() };
         assert_eq!(of(&[far], 1, 3.0, 3.0), Verdict::Unexplained);
         // 3^2 - 1 = 8; 2.5^2 - 1 = 5.25: takes away 34 %.
-        let little = Finding { validation_z: 2.5, ..good };
+        let little = Finding { validation_z: 2.5, elpd_error: 10.0, ..good.clone() };
         let (verdict, because) = verdict(&[little], 1, 3.0, 3.0);
         assert_eq!(verdict, Verdict::Unexplained);
         assert!(because.contains("34 %"), "{because}");
+        // 30 nats of 1 each block: it foretells everywhere, though something is left.
+        let everywhere = Finding { validation_z: 2.5, ..good.clone() };
+        assert_eq!(of(&[everywhere], 1, 3.0, 3.0), Verdict::Named);
+        // 1.5^2 - 1 = 1.25 of 1.7^2 - 1 = 1.89: takes away 34 %, and foretells nothing.
+        let nothing = Finding { validation_z: 1.5, elpd: -4.0, ..good };
+        assert_eq!(of(&[nothing], 1, 1.7, 1.7), Verdict::Unexplained);
     }
 }

@@ -1,6 +1,6 @@
 //! What was tried, best first.
 
-use super::{AS_WELL, NEARLY, Search, TOGETHER, TRIED, WARM, excess, prior};
+use super::{AS_WELL, Search, TOGETHER, TRIED, WARM, excess, prior, together};
 use crate::elpd;
 use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};
@@ -22,9 +22,9 @@ impl Search<'_> {
             refuted(a).cmp(&refuted(b)).then_with(evidence)
         });
         let Some(best) = tried.first() else { return Vec::new() };
-        // Where a share of the gain does not tell effects apart, it does not make them improbable either.
+        // What does not tell effects apart does not make them improbable either.
         let gain = best.fit.log_evidence - null.log_evidence;
-        let loud = (NEARLY * gain / TOGETHER).max(1.0);
+        let loud = together(gain, least) / TOGETHER;
         let strain = |t: &Tried| {
             let of = |(&k, &place): (&usize, &usize)| self.all[k].strain(t.fit.at[place]);
             t.candidates.iter().zip(&t.places).map(of).fold(0.0, f64::max)

@@ -2,12 +2,12 @@
 
 use super::wins::{SURE, WINS, WITHIN};
 use super::{BEYOND, EXPLAINED, First, KEEPS, PAIRS, Search, Settled, excess};
+use crate::catalogue::tolerances;
 use crate::error::ExplainError;
 use crate::explain::Verdict;
 use crate::fit::{Care, fit};
 use crate::screen::{Screened, pairs, together};
 use crate::trial::Start;
-use crate::unknown::Unknown;
 
 impl Search<'_> {
     /// Takes out what a later effect has made superfluous.
@@ -18,17 +18,14 @@ impl Search<'_> {
         let with = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
         for k in (0..self.taken.len() - 1).rev() {
             let candidate = &self.all[self.taken[k]];
-            let own: Vec<_> =
-                candidate.beside.iter().chain([&candidate.unknown]).map(|u| &u.target).collect();
             let mut base = self.base.clone();
-            base.retain(|unknown| !own.contains(&&unknown.target));
-            if let Some((middle, sd)) = candidate.tolerance.filter(|(_, sd)| *sd > 0.0) {
-                let unknown =
-                    Unknown { mean: middle, sd, start: middle, ..candidate.unknown.clone() };
-                base.push(unknown);
-            }
+            base.retain(|unknown| !candidate.owns(unknown));
+            // What it is made of is uncertain again as it was before.
+            base.extend(tolerances(self.experiment).into_iter().filter(|u| candidate.owns(u)));
             let without = fit(self.experiment, &base, &self.likelihood, &self.slopes, Care::Quick)?;
-            if with.log_evidence - without.log_evidence < KEEPS {
+            // What the others leave within what the sensors promise needs no further one that is not very sure.
+            let least = if self.z(&without.readings) < WITHIN { SURE } else { KEEPS };
+            if with.log_evidence - without.log_evidence < least {
                 self.base = base;
                 self.taken.remove(k);
                 settled.effects.remove(k);
@@ -108,6 +105,7 @@ impl Search<'_> {
             && pair.fit.log_evidence - null.log_evidence > WINS
             && explained > EXPLAINED
             && plausible
+            && one.elpd > 2.0 * one.elpd_error
         {
             settled.because = format!(
                 "{} and {} together explain more than one alone, with {gain:.0} nats more evidence",

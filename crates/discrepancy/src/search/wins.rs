@@ -9,22 +9,46 @@ pub(super) const WINS: f64 = 4.0;
 pub(super) const WITHIN: f64 = 0.75;
 /// ... with evidence above this, nats.
 pub(super) const SURE: f64 = 25.0;
-/// ... or, as a tolerance that is strained by more than this has no more evidence than half of its square, with [`STRAINS`].
-const STRAINED: f64 = 4.0;
+/// ... or, as a tolerance that is strained by more than this has no more evidence than half of its square, with that.
+const STRAINED: f64 = 5.0;
 /// The same, where it foretells no better than strained tolerances.
 pub(super) const STRAINS: f64 = 8.0;
 /// Log predictive density by which it must beat it, nats; and as many standard errors.
 const FORETELLS: (f64, f64) = (4.0, 2.0);
+/// Standard errors by which it foretells in nearly every block.
+const SURELY: f64 = 5.0;
 /// The least reduction of the error on samples that were not fitted.
 const REDUCTION: f64 = 0.02;
+
 /// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
 pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
-    let sure = f.evidence > SURE || (f.tolerated && f.strain > STRAINED && f.evidence > STRAINS);
+    let sure = f.evidence > SURE
+        || (f.tolerated && f.strain > STRAINED && f.evidence > 0.5 * STRAINED * STRAINED);
     if f.within || (null_z < WITHIN && !sure) {
         return false;
     }
-    let (nats, errors) = FORETELLS;
-    let foretells = f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION;
     // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
-    f.evidence > STRAINS || (f.evidence > WINS && foretells)
+    let foretells_or_strained = f.tolerated || f.elpd > FORETELLS.1 * f.elpd_error;
+    (f.evidence > STRAINS && foretells_or_strained) || (f.evidence > WINS && foretells(f))
+}
+
+/// Whether one more effect beside so many that were taken is one: a second one must foretell beyond chance, more must in every
+/// respect, as what the first ones do not quite explain is left for others.
+pub(super) fn adds(f: &Finding, taken: usize) -> bool {
+    match taken {
+        0 => true,
+        1 => f.elpd > FORETELLS.1 * f.elpd_error,
+        _ => f.evidence > STRAINS && foretells(f),
+    }
+}
+
+/// Whether it foretells what was not fitted clearly better than the model without it.
+pub(super) fn foretells(f: &Finding) -> bool {
+    let (nats, errors) = FORETELLS;
+    f.elpd > nats.max(errors * f.elpd_error) && f.reduction > REDUCTION
+}
+
+/// Whether it does so in nearly every block.
+pub(super) fn surely_foretells(f: &Finding) -> bool {
+    foretells(f) && f.elpd > SURELY * f.elpd_error
 }
