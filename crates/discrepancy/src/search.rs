@@ -17,7 +17,7 @@ use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::unknown::Unknown;
 use nalgebra::DVector;
-use wins::{STRAINS, WINS, adds, wins};
+use wins::{STRAINS, WINS, adds, together, wins};
 
 /// The likelihood is taken to the power of one over this ...
 const TEMPERATURE: f64 = 1.0;
@@ -26,10 +26,6 @@ const TEMPERATURE: f64 = 1.0;
 const LOUD: f64 = 0.125;
 /// An effect that brings less than this is taken out again, nats.
 const KEEPS: f64 = 2.0;
-/// Evidence within which two effects are not told apart, nats ...
-const TOGETHER: f64 = 3.0;
-/// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
-const NEARLY: f64 = 0.15;
 /// Effects whose residuals on samples that were not fitted are so many times those of the best, and take away so much less
 /// of the discrepancy there, are refuted.
 const AS_WELL: (f64, f64) = (2.0, 0.25);
@@ -389,13 +385,6 @@ impl<'a> Search<'a> {
 /// Logarithm of the odds of an effect so far from what is plausible, nats.
 fn prior(strain: f64) -> f64 {
     -2.0 * (strain / PLAUSIBLE).max(1.0).ln()
-}
-
-/// Nats within which effects are not told apart where the best one gains `gain` nats and leaves residuals of `z` standard
-/// deviations, of whose squares `1 - 1/z^2` are the error of the model.
-fn together(gain: f64, z: f64) -> f64 {
-    let wrong = 1.0 - 1.0 / z.max(1.0).powi(2);
-    TOGETHER.max(NEARLY * wrong * gain)
 }
 
 /// Squared residuals beyond those that noise explains.

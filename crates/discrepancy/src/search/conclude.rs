@@ -1,9 +1,9 @@
 //! The verdict of the first round.
 
-use super::wins::{foretells, surely_foretells, wins};
+use super::wins::{foretells, surely_foretells, together, wins};
 use super::{
     BEYOND, DIFFERS, EXPLAINED, LEAVES, PARALLEL, Round, Search, Settled, TAKES, UNEXPLAINED,
-    excess, prior, together,
+    excess, prior,
 };
 use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;

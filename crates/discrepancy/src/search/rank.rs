@@ -1,6 +1,7 @@
 //! What was tried, best first.
 
-use super::{AS_WELL, Search, TOGETHER, TRIED, WARM, excess, prior, together};
+use super::wins::{TOGETHER, together};
+use super::{AS_WELL, Search, TRIED, WARM, excess, prior};
 use crate::elpd;
 use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};

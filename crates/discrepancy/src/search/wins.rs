@@ -19,6 +19,10 @@ const FORETELLS: (f64, f64) = (4.0, 2.0);
 const SURELY: f64 = 5.0;
 /// The least reduction of the error on samples that were not fitted.
 const REDUCTION: f64 = 0.02;
+/// Evidence within which two effects are not told apart, nats ...
+pub(super) const TOGETHER: f64 = 3.0;
+/// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
+const NEARLY: f64 = 0.15;
 
 /// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
 pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
@@ -51,4 +55,11 @@ pub(super) fn foretells(f: &Finding) -> bool {
 /// Whether it does so in nearly every block.
 pub(super) fn surely_foretells(f: &Finding) -> bool {
     foretells(f) && f.elpd > SURELY * f.elpd_error
+}
+
+/// Nats within which effects are not told apart where the best one gains `gain` nats and leaves residuals of `z` standard
+/// deviations, of whose squares `1 - 1/z^2` are the error of the model.
+pub(super) fn together(gain: f64, z: f64) -> f64 {
+    let wrong = 1.0 - 1.0 / z.max(1.0).powi(2);
+    TOGETHER.max(NEARLY * wrong * gain)
 }

@@ -6195,9 +6195,10 @@ class _Effect:
         ci95
             Interval of the value; changes nothing
         wall_capacity_j_m_k
-            Heat capacity of the wall per length, J/(m K); 0 changes nothing.
+            Heat capacity of the wall per length, J/(m K); 0 leaves the wall that the pipe has. Default: 0.0.
         film_factor
-            Heat transfer between water and wall over what its law says. Default: 1.0.
+            Heat transfer between water and wall over what its law says; without a wall it changes nothing.
+            Default: 1.0.
         """
     def p2(
         self,
