@@ -58,11 +58,12 @@ impl Without<'_> {
         };
         let n = &self.fit.sensitivity;
         let without = |d: &DVector<f64>| d - n * factor.solve(&n.tr_mul(d));
+        let stuck = (0..self.unknowns.len()).any(|i| self.fit.at_bound(self.unknowns, i));
         let looked = on_all_cores(open.len(), |k| {
             let candidate = &all[open[k]];
             let mut best = self.along_tolerance(candidate, open[k], &factor);
             let simulated = self.experiment.is_simulated(&candidate.unknown.target);
-            for start in strengths(candidate, simulated) {
+            for start in strengths(candidate, simulated, stuck) {
                 let Some(d) = self.changes(candidate, start) else { continue };
                 let direction = without(&d);
                 let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
@@ -152,10 +153,15 @@ impl Without<'_> {
     }
 }
 
-/// Coordinates at which it is tried: two, or more where it needs no simulation.
-fn strengths(candidate: &Candidate, simulated: bool) -> Vec<f64> {
+/// Coordinates at which it is tried: two, or more where it needs no simulation, or where tolerances stick to their bounds and may
+/// be as far already.
+fn strengths(candidate: &Candidate, simulated: bool, stuck: bool) -> Vec<f64> {
     let unknown = &candidate.unknown;
-    let beside: &[f64] = if simulated { &[0.7] } else { &[0.2, 0.4, 0.7, 1.2, 1.8] };
+    let beside: &[f64] = match (simulated, stuck) {
+        (false, _) => &[0.2, 0.4, 0.7, 1.2, 1.8],
+        (true, false) => &[0.7],
+        (true, true) => &[0.7, 1.8],
+    };
     beside
         .iter()
         .flat_map(|sd| [unknown.mean - sd * unknown.sd, unknown.mean + sd * unknown.sd])
