@@ -32,8 +32,9 @@ impl Search<'_> {
         };
         let over = |evidence: f64| ((evidence - best.fit.log_evidence) / loud / WARM).exp();
         let weight = |t: &Tried| over(t.fit.log_evidence) * (prior(strain(t)) / WARM).exp();
-        let total = tried.iter().filter(|t| !refuted(t)).map(&weight).sum::<f64>()
-            + over(null.log_evidence);
+        // That nothing is missing counts as much as all that was looked at together: of many something fits best by chance.
+        let nothing = self.all.len() as f64 * over(null.log_evidence);
+        let total = tried.iter().filter(|t| !refuted(t)).map(&weight).sum::<f64>() + nothing;
         let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
         let of_null = elpd::by_block(null, &self.base, &blocks);
         let finding = |t: &Tried| -> Vec<Finding> {
