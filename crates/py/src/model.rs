@@ -384,6 +384,11 @@ impl Model {
     ///     When the model is wrong.
     /// RunError
     ///     When its state at the start cannot be solved.
+    ///
+    /// Warns
+    /// -----
+    /// UserWarning
+    ///     When the step is longer than the control of a station follows.
     #[pyo3(signature = (step_s=None, controllers=None))]
     fn simulation(
         &self,

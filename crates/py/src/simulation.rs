@@ -15,10 +15,11 @@ use anergy_simulation::model_file::StepEntry;
 use anergy_simulation::plan::Plan;
 use anergy_simulation::simulation;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyList, PyTuple};
+use std::ffi::CString;
 use std::sync::Arc;
 
 /// A simulation stepped from outside, made by `Model.simulation`.
@@ -53,6 +54,11 @@ impl Simulation {
             .detach(|| simulation::Simulation::new(plan))
             .map_err(|error| errors::run_error(py, &error, "", &Origin::Dict))?;
         let controllers = Controllers::attach(py, &mut simulation, controllers)?;
+        // A run records it; here nobody would see it before the results swing.
+        for event in simulation.coarse_steps(step) {
+            let message = CString::new(event.message)?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 1)?;
+        }
         Ok(Self { simulation, step, controllers })
     }
 

@@ -13,6 +13,29 @@ def sim(model):
     return model.simulation(step_s=1.0)
 
 
+def test_a_step_that_control_does_not_follow_warns_once():
+    house = {"kind": "heat_load", "load_kw": 5, "return_degc": 40}
+    station = {"directions": "extraction", "extraction": "valve", "flow_control": "pi"}
+    model = anergy.Model.from_dict({
+        "format": 1,
+        "run": {"until": "1h", "step": "1s"},
+        "site": [{"id": "plant"}, {"id": "house"}],
+        "trench": [{"from": "plant", "to": "house", "length_m": 50, "inner_diameter_mm": 40}],
+        "station": [
+            {
+                "site": "plant", "kind": "plant", "supply_degc": 70, "dp_bar": 0.5, "return_pressure_bar": 2,
+                "circulation_pump": {"head_max_bar": 2, "free_flow_m3_h": 5},
+            },
+            {"site": "house", "kind": "prosumer", "unit": house, **station},
+        ],
+    })
+    assert model.simulation().step_s == 1
+    with pytest.warns(UserWarning, match="house.station: the control of its flow follows steps up to") as warned:
+        coarse = model.simulation(step_s=60)
+        coarse.step(3)
+    assert len(warned) == 1
+
+
 def row(sim):
     return [sim.get(name) for name in sim.channels]
 

@@ -58,7 +58,7 @@ pub fn run(
     for event in simulation.unit_remarks() {
         recorder.event(&event)?;
     }
-    for event in simulation.coarse_steps(step.longest()) {
+    for event in simulation.coarse_steps(step) {
         recorder.event(&event)?;
     }
     write(simulation, recorder.as_mut())?;

@@ -11,12 +11,16 @@
 //!
 //! **Sources** `vanderheijde2017`.
 
+use super::parcels::MERGE_TOLERANCE_K;
 use super::plug_flow::{self, Decay, mean_decay};
 use super::{Relation, Transport, cells, volume_shares};
 use crate::graph::Network;
 use crate::state::NetworkState;
 use crate::two_port::{EdgeThermal, PlugFlowPipe, Wall};
 use anergy_core::port::Port;
+
+/// Straight pieces of the steady profile of a pipe, at most: half of what it holds.
+const MOST_PIECES: f64 = 100.0;
 
 /// A stretch of a pipe in the steady state.
 pub(super) struct Stretch {
@@ -259,8 +263,8 @@ impl Transport {
                 let water_k = towards + (a - towards) * ratio.powf(at - k as f64);
                 (water_k, around_k + (water_k - around_k) * wall_share)
             });
-        } else if let [(t_a_k, t_b_k, _)] = ends[..] {
-            state.parcels.fill_linear(i, t_a_k, t_b_k);
+        } else if let [profile] = ends[..] {
+            state.parcels.fill_stretches(i, &straight_pieces(profile));
         } else {
             state.parcels.fill_stretches(i, &ends);
         }
@@ -306,6 +310,22 @@ impl Transport {
     fn stretches(&self, i: usize) -> usize {
         self.coupled.stretches(i)
     }
+}
+
+/// Straight pieces of the exponential between its ends towards what it approaches, K. Between two of its points
+/// a straight line is above it by at most `excess (ntu/n)^2/8`.
+fn straight_pieces((t_a_k, t_b_k, towards_k): (f64, f64, f64)) -> Vec<(f64, f64, f64)> {
+    let (a_k, b_k) = (t_a_k - towards_k, t_b_k - towards_k);
+    let ratio = b_k / a_k;
+    let pieces = ratio.ln().abs() * (a_k.abs().max(b_k.abs()) / (8.0 * MERGE_TOLERANCE_K)).sqrt();
+    // Without excess there is one piece, and where a pipe cools down altogether as many as there may be.
+    let n = if pieces.is_nan() { 1.0 } else { pieces.ceil().clamp(1.0, MOST_PIECES) };
+    let at_k = |k: f64| match k {
+        0.0 => t_a_k,
+        k if k == n => t_b_k,
+        k => towards_k + a_k * ratio.powf(k / n),
+    };
+    (0..n as usize).map(|k| (at_k(k as f64), at_k(k as f64 + 1.0), towards_k)).collect()
 }
 
 /// The content of a pipe without its end volume.

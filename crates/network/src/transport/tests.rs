@@ -296,6 +296,25 @@ fn the_steady_state_stays_with_every_wall() {
     }
 }
 
+#[test]
+fn the_steady_profile_of_a_pipe_that_cools_down_stays() {
+    // At 0.005 kg/s NTU = 2.3923: outlet 280 + 60 e^-2.3923 = 285.485 K. A straight line from end to end holds 312.74 K in the
+    // middle, the exponential 298.14: what leaves after half of the content would be 14.6 e^-1.196 = 4.4 K too warm.
+    for m in [0.005, -0.005] {
+        let mut rig = Rig::new(&[pipe(WallModel::None)], &[], 300.0);
+        rig.flow(0, m, 340.0);
+        rig.settle();
+        let settled_w = rig.state.q_loss_w[0];
+        // 785.4 kg pass in 43.6 h.
+        for _ in 0..100 {
+            let t_k = rig.step(1800.0)[0];
+            assert!((t_k - 285.485).abs() < 1e-3, "{m}: {t_k}");
+            let loss_w = rig.state.q_loss_w[0];
+            assert!((loss_w / settled_w - 1.0).abs() < 1e-4, "{m}: {loss_w} {settled_w}");
+        }
+    }
+}
+
 fn pair(reversed: bool, conductance_w_k: f64) -> Rig {
     let params = PipeParams { insulation_resistance_k_m_w: None, ..pipe(WallModel::None) };
     let coupling = Coupling {

@@ -1,6 +1,7 @@
 //! Houses: units say what they want of their ports, circuits go round, units take what they got.
 
 use super::Simulation;
+use crate::automatic_step::Step;
 use crate::error::RunError;
 use crate::plan::{PlannedCircuit, PlannedDrive, PlannedUnit};
 use anergy_core::clock::Time;
@@ -167,8 +168,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Warnings of stations whose control cannot follow steps of this length.
-    pub(crate) fn coarse_steps(&self, longest: Time) -> Vec<Event> {
+    /// Warnings of stations whose control cannot follow steps like these.
+    pub fn coarse_steps(&self, step: Step) -> Vec<Event> {
+        let longest = step.longest();
         let coarse =
             |planned: &&PlannedDrive| planned.longest_step.is_some_and(|step| longest > step);
         let warn = |planned: &PlannedDrive| {

@@ -3,13 +3,17 @@
 //! **Equation** counter flow, `Q = UA (d_1 - d_2)/ln(d_1/d_2)`, `d_1 = T_in - T_set` at the hot end, `d_2 = T_out - T_cold`
 //! at the cold end: with `y = d_2/d_1` it is `(y - 1)/ln y = Q/(UA d_1)`, whose left side rises with `y`; then
 //! `C = Q/(T_in - T_out)`. **Numerics** Newton in `ln y`, where the left side is convex: from above, to rounding in a
-//! few rounds; far below 1 from the left, where the first step leads above. Where that takes more than the largest flow, or the water is too cold, the largest flow gives what it
-//! can. **Sources** `incropera2007`.
+//! few rounds; far below 1 from the left, where the first step leads above. Where that takes more than the largest flow, or the water is
+//! too cold, the largest flow gives what it can. A large exchanger needs little flow as long as the water is a little warmer
+//! than set: below, the pump goes from that to its largest flow within [`BAND_K`] (the band of the controller of the tap),
+//! otherwise the pump at the end of a long pipe would have no flow at which it stays. **Sources** `incropera2007`.
 
 use crate::direct_exchange::conductance_w_k;
 
 /// Less than this at the hot end is none, K.
 const LEAST_K: f64 = 1e-3;
+/// Below the set temperature the pump reaches its largest flow within this, K.
+const BAND_K: f64 = 1.0;
 const MOST_ROUNDS: usize = 30;
 
 /// Exchanger and pump.
@@ -32,18 +36,25 @@ impl Exchanger {
             return (self.most_w_k, 0.0);
         }
         let hot_end_k = arrives_k - set_k;
-        if hot_end_k > LEAST_K {
-            let cold_end_k = hot_end_k * ratio(wanted_w / (self.ua_w_k * hot_end_k));
-            let out_k = inlet_k + cold_end_k;
-            if out_k < arrives_k {
-                let pump_w_k = wanted_w / (arrives_k - out_k);
-                if pump_w_k <= self.most_w_k {
-                    return (pump_w_k, wanted_w);
-                }
+        let pump_w_k = match self.needed_w_k(wanted_w, inlet_k, set_k, hot_end_k.max(LEAST_K)) {
+            Some(pump_w_k) if hot_end_k >= LEAST_K => return (pump_w_k, wanted_w),
+            Some(pump_w_k) => {
+                let more = ((LEAST_K - hot_end_k) / BAND_K).min(1.0);
+                pump_w_k + more * (self.most_w_k - pump_w_k)
             }
-        }
-        let heat_w = conductance_w_k(self.ua_w_k, self.most_w_k, flow_w_k) * (arrives_k - inlet_k);
-        (self.most_w_k, heat_w.min(wanted_w))
+            None => self.most_w_k,
+        };
+        let heat_w = conductance_w_k(self.ua_w_k, pump_w_k, flow_w_k) * (arrives_k - inlet_k);
+        (pump_w_k, heat_w.min(wanted_w))
+    }
+
+    /// Capacity flow of the pump for all of the heat, W/K, with water warmer than set by `hot_end_k`; `None` beyond what it
+    /// can.
+    fn needed_w_k(&self, wanted_w: f64, inlet_k: f64, set_k: f64, hot_end_k: f64) -> Option<f64> {
+        let cold_end_k = hot_end_k * ratio(wanted_w / (self.ua_w_k * hot_end_k));
+        let cooled_k = set_k + hot_end_k - (inlet_k + cold_end_k);
+        let pump_w_k = wanted_w / cooled_k;
+        (cooled_k > 0.0 && pump_w_k <= self.most_w_k).then_some(pump_w_k)
     }
 }
 
@@ -105,6 +116,19 @@ mod tests {
             assert!(flow_w_k == exchanger.most_w_k && heat_w < 48_766.0);
             assert!(283.15 + heat_w / (4180.0 / 3.0) < arrives_k);
         }
+        // A circulation of 30 W/K that comes back with 40 degC: 1 mK above 45 degC k = 150/(6000 * 0.001) = 25 of y = 113.9 (112.9/
+        // 4.735 = 23.8; y = 120.6: 119.6/4.793 = 24.95), out 40.121 degC, 150/4.880 = 30.74 W/K; half of the band below the pump is half
+        // way to its largest flow, and nothing jumps.
+        let (flow_w_k, heat_w) = exchanger.serve(30.0, 313.15, 318.15, 318.151);
+        assert!((flow_w_k - 30.74).abs() < 0.01 && (heat_w - 150.0).abs() < 1e-9, "{flow_w_k}");
+        let half_w_k = exchanger.serve(30.0, 313.15, 318.15, 317.651).0;
+        assert!((half_w_k - 0.5 * (flow_w_k + exchanger.most_w_k)).abs() < 1e-6, "{half_w_k}");
+        let (below, above) = (318.151 - 1e-9, 318.151 + 1e-9);
+        let at = |arrives_k: f64| exchanger.serve(30.0, 313.15, 318.15, arrives_k);
+        assert!(
+            (at(below).0 - at(above).0).abs() < 1e-4 && (at(below).1 - at(above).1).abs() < 1e-4
+        );
+        assert_eq!(at(316.0).0, exchanger.most_w_k);
         // Water that is colder than that of the taps gives nothing, and is drawn until warm water comes.
         assert_eq!(exchanger.serve(1000.0, 283.15, 318.15, 280.0), (exchanger.most_w_k, 0.0));
         assert_eq!(exchanger.serve(0.0, 283.15, 318.15, 280.0), (0.0, 0.0));
