@@ -378,7 +378,16 @@ impl ThermalUnit for Combustion {
     }
 
     fn remarks(&self) -> Vec<String> {
-        crate::thermal_unit::scaled_far(self.size)
+        let mut remarks = crate::thermal_unit::scaled_far(self.size);
+        let warm_up = &self.main.burner.warm_up;
+        let twice_kwh = 0.5 * warm_up.heat_w * warm_up.lasts_s / 3.6e6;
+        if self.engine.is_some() && twice_kwh > 0.0 {
+            remarks.push(format!(
+                "content_kj_k takes the heat of a cold start, and warm_up_kw another {twice_kwh:.2} kWh: leave warm_up_kw \
+                 out, unless the engine has metal that warms up slower than its water"
+            ));
+        }
+        remarks
     }
 }
 

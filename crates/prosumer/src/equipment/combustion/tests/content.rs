@@ -140,6 +140,14 @@ fn the_cold_start_of_an_engine_with_a_content_is_counted_once() {
         (0..720).for_each(|_| engine.step(5.0, 0.0));
         engine.heat_j + engine.unit.stored_j(&engine.state) + engine.out("loss_j")
     };
+    // Who gives both is told: 1000 W * 2400 s/2 = 0.33 kWh.
+    let remarks = |warm_up_w| {
+        let params = ChpParams { warm_up_w, ..with_content() };
+        params.build(&water()).unwrap().remarks()
+    };
+    assert!(remarks(None).is_empty());
+    let told = remarks(Some(1000.0));
+    assert!(told[0].contains("warm_up_kw another 0.33 kWh"), "{told:?}");
     let less_j = given_j(None) - given_j(Some(1000.0));
     assert!((less_j / 1.1447e6 - 1.0).abs() < 0.01, "{less_j}");
 }
