@@ -8,6 +8,7 @@ mod answers;
 pub mod blocking;
 mod chain;
 mod count;
+mod elimination;
 mod flush;
 pub mod hunting;
 mod law;

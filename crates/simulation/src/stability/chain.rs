@@ -10,6 +10,9 @@ type C64 = Complex<f64>;
 
 /// Lags in a row: those of an actuator, that of the water, that of a sensor.
 const MOST: usize = 4;
+/// Norm below which so many terms of the series of an exponential are all: 0.25^12/12! is 1e-16.
+const SMALL: f64 = 0.25;
+const TERMS: i32 = 12;
 
 /// A chain of lags with a dead time.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,17 +75,17 @@ impl Chain {
     /// State after a time over the state before it, and over a command held meanwhile.
     fn step(&self, time_s: f64) -> ([[f64; MOST]; MOST], [f64; MOST]) {
         let n = self.lags_s.len();
-        let mut rates = DMatrix::zeros(n + 1, n + 1);
+        let mut rates = [[0.0; MOST + 1]; MOST + 1];
         for (i, lag_s) in self.lags_s.iter().enumerate() {
-            rates[(i, i)] = -time_s / lag_s;
+            rates[i][i] = -time_s / lag_s;
             let driver = if i == 0 { n } else { i - 1 };
-            rates[(i, driver)] = time_s / lag_s;
+            rates[i][driver] = time_s / lag_s;
         }
-        let step = rates.exp();
+        let step = exponential(&rates);
         let (mut phi, mut gamma) = ([[0.0; MOST]; MOST], [0.0; MOST]);
         for i in 0..n {
-            gamma[i] = step[(i, n)];
-            (0..n).for_each(|k| phi[i][k] = step[(i, k)]);
+            gamma[i] = step[i][n];
+            phi[i][..n].copy_from_slice(&step[i][..n]);
         }
         (phi, gamma)
     }
@@ -119,13 +122,18 @@ impl SampledChain {
         if self.n == 0 {
             return late;
         }
-        let (mut v, last) = (*ahead, self.n - 1);
-        if self.n > self.ahead {
-            let before: C64 = (0..last).map(|k| v[k] * self.phi[last][k]).sum();
-            v[last] = (before + self.gamma[last]) * behind;
+        let last = self.n - 1;
+        let (row, row_rest) = (&self.phi[last], &self.phi_rest[last]);
+        let mut before = C64::new(self.gamma[last], 0.0);
+        let mut rest = C64::new(self.gamma_rest[last], 0.0);
+        for k in 0..self.ahead {
+            before += ahead[k] * row[k];
+            rest += ahead[k] * row_rest[k];
         }
-        let rest: C64 = (0..self.n).map(|k| v[k] * self.phi_rest[last][k]).sum();
-        late * (rest + self.gamma_rest[last])
+        if self.n > self.ahead {
+            rest += before * behind * row_rest[last];
+        }
+        late * rest
     }
 }
 
@@ -249,6 +257,37 @@ impl Chains {
     pub fn dead_s(&self) -> f64 {
         self.sensors.iter().fold(self.interval_s, |longest, seen| longest.max(seen.dead_s))
     }
+}
+
+type Square = [[f64; MOST + 1]; MOST + 1];
+
+/// Exponential of a matrix: its series for a part so small that it ends, squared as often as that was halved.
+fn exponential(matrix: &Square) -> Square {
+    let entries = || matrix.iter().flatten();
+    let largest = entries().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    // Two entries in a row at most.
+    let halvings = (2.0 * largest / SMALL).log2().ceil().max(0.0) as i32;
+    let part = matrix.map(|row| row.map(|entry| entry * 0.5_f64.powi(halvings)));
+    let mut sum = [[0.0; MOST + 1]; MOST + 1];
+    (0..=MOST).for_each(|i| sum[i][i] = 1.0);
+    let mut term = sum;
+    for k in 1..=TERMS {
+        term = product(&term, &part).map(|row| row.map(|entry| entry / f64::from(k)));
+        for (sum, term) in sum.iter_mut().flatten().zip(term.iter().flatten()) {
+            *sum += term;
+        }
+    }
+    (0..halvings).fold(sum, |power, _| product(&power, &power))
+}
+
+fn product(a: &Square, b: &Square) -> Square {
+    let mut product = [[0.0; MOST + 1]; MOST + 1];
+    for (row, a) in product.iter_mut().zip(a) {
+        for (share, b) in a.iter().zip(b) {
+            row.iter_mut().zip(b).for_each(|(entry, b)| *entry += share * b);
+        }
+    }
+    product
 }
 
 /// What is different in a list, and which of it each entry is.

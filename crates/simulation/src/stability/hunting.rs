@@ -259,10 +259,11 @@ impl<'a> Group<'a> {
         self.planned.iter().all(|c| timing(c) == timing(self.planned[0]))
     }
 
-    /// What the loops do, or why that is not known.
-    fn analyse(&self, plan: &Plan, state: &State) -> Result<Found, &'static str> {
+    /// What the loops do, or why that is not known; with the loops as if they updated together.
+    fn analyse(&self, plan: &Plan, state: &State) -> Result<(Found, Loops), &'static str> {
+        let together = self.together();
         if self.is_together() {
-            return Ok(super::modes::analyse(&self.together()));
+            return Ok((super::modes::analyse(&together), together));
         }
         if !self.between.late.is_empty() {
             return Err(
@@ -299,7 +300,7 @@ impl<'a> Group<'a> {
             links: self.between.links.clone(),
             tick_s: Time(tick).as_s(),
         };
-        loops.analyse().ok_or(many)
+        Ok((loops.analyse().ok_or(many)?, together))
     }
 }
 
@@ -312,8 +313,9 @@ fn judge(
     answers: &Answers,
     hunting: &mut Hunting,
 ) {
-    let whole = Group::new(plan, state, closed, group, answers);
-    let found = match whole.analyse(plan, state) {
+    // With different timing, shapes are those of the loops as if they updated together.
+    let (found, whole) = match Group::new(plan, state, closed, group, answers).analyse(plan, state)
+    {
         Ok(found) => found,
         Err(reason) => {
             for &i in group {
@@ -322,8 +324,6 @@ fn judge(
             return;
         }
     };
-    // With different timing, shapes are those of the loops as if they updated together.
-    let whole = whole.together();
     let name = |i: usize| plan.controllers[closed[group[i]].controller].name.clone();
     for root in &found.roots {
         let (shares, phases) = whole.shape(root.s);
@@ -354,7 +354,7 @@ fn judge(
             .map(|limit| TAU / limit.omega_rad_s);
         margin.relative_gain = relative.as_ref().map(|relative| relative[i]);
         let alone = Group::new(plan, state, closed, &[k], answers).analyse(plan, state);
-        let limit = alone.ok().and_then(|alone| alone.limit);
+        let limit = alone.ok().and_then(|(alone, _)| alone.limit);
         margin.critical_gain_alone = limit.map(|limit| margin.gain * limit.factor);
     }
 }

@@ -10,6 +10,7 @@
 
 use super::answers::Link;
 use super::chain::{Chains, Seen};
+use super::elimination::Eliminated;
 use super::law::Law;
 use super::response::StepResponse;
 use super::water::Late;
@@ -225,9 +226,10 @@ impl Loops {
         // Near a root the inverse is the residue over the distance: right times left vector.
         let beside = s + Complex::new(1e-5 * s.norm(), 0.0);
         let n = self.len();
-        let Some(inverse) = self.closed(beside, 1.0).try_inverse() else {
+        let Some(closed) = Eliminated::of(&self.closed(beside, 1.0)) else {
             return (vec![0.0; self.laws.len()], vec![0.0; n]);
         };
+        let inverse = closed.inverse();
         let mut shares = vec![0.0; self.laws.len()];
         let total: f64 = (0..n).map(|i| inverse[(i, i)].norm()).sum();
         for i in 0..n {

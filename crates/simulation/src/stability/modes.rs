@@ -9,6 +9,7 @@
 //! (integrators) or in the left half plane. **Sources** `skogestad2005` (generalised Nyquist criterion).
 
 use super::count::{Case, count_growing};
+use super::elimination::Eliminated;
 use super::limit::{limit_by_counting, limit_of_modes};
 use super::loops::Loops;
 use super::secant::secant;
@@ -254,14 +255,13 @@ fn together<'a>(loops: &'a Loops, omegas: &[f64]) -> Vec<Scalar<'a>> {
 
 fn inverse_iteration(matrix: &DMatrix<C64>) -> DVector<C64> {
     let n = matrix.nrows();
-    let lu = matrix.clone().lu();
     let mut vector = probe(n, 1);
+    let Some(eliminated) = Eliminated::of(matrix) else { return vector };
     for _ in 0..3 {
-        if let Some(next) = lu.solve(&vector) {
-            let norm = next.norm();
-            if norm.is_finite() && norm > 0.0 {
-                vector = next.unscale(norm);
-            }
+        let next = eliminated.solve(&vector);
+        let norm = next.norm();
+        if norm.is_finite() && norm > 0.0 {
+            vector = next.unscale(norm);
         }
     }
     vector
@@ -351,8 +351,8 @@ fn follow(scalar: &Scalar, limit: Limit) -> Option<C64> {
 
 /// `1/(c^H (1 + k L)^-1 b)`.
 pub(super) fn resolvent(loops: &Loops, s: C64, factor: f64, (c, b): &Probes) -> C64 {
-    match loops.closed(s, factor).lu().solve(b) {
-        Some(answer) => c.dotc(&answer).inv(),
+    match Eliminated::of(&loops.closed(s, factor)) {
+        Some(closed) => c.dotc(&closed.solve(b)).inv(),
         None => C64::new(0.0, 0.0),
     }
 }
