@@ -381,3 +381,23 @@ fn loads_in_a_loop_without_pipes_end_at_their_coldest_return() {
     assert!(get("a.unit.q_flow_w").abs() < 1e-6, "{}", get("a.unit.q_flow_w"));
     assert!(Balances::of(&simulation).heat_error() < 1e-9);
 }
+
+#[test]
+fn a_flow_that_is_a_rounding_error_has_a_temperature() {
+    // The transit time, 0.2 m3 over 1e-320 kg/s, is beyond all numbers. A loop without pipes makes all nodes one system.
+    let text = format!(
+        "format = 1\n[run]\ninitial_degc = 40.0\n{}[[node]]\nid = \"b\"\n[[node]]\nid = \"c\"\n[[node]]\nid = \"d\"\n\
+         [[node]]\nid = \"out\"\nkind = \"pressure_boundary\"\npressure_bar = 1.0\n\
+         [[node]]\nid = \"end\"\nkind = \"source\"\nm_flow_kg_s = -1e-320\n\
+         [[edge]]\nid = \"dead\"\nkind = \"pipe\"\nfrom = \"b\"\nto = \"end\"\nlength_m = 100\ninner_diameter_mm = 50\n\
+         [[edge]]\nid = \"pump\"\nkind = \"pump\"\nfrom = \"c\"\nto = \"d\"\nhead_max_bar = 0.2\nfree_flow_l_min = 60\n{}{}{}",
+        source("a", 5.0, 70.0),
+        resistance("in", "a", "b"),
+        resistance("round", "d", "c"),
+        resistance("back", "d", "out"),
+    ) + &resistance("on", "b", "c");
+    let steady = steady::solve(&model(&text)).unwrap();
+    // At rest: it has taken the temperature around it.
+    near("dead end", steady.node("end").unwrap().t_k, 285.15, 1e-3);
+    near("behind the loop", steady.node("out").unwrap().t_k, 343.15, 1e-3);
+}

@@ -139,7 +139,8 @@ impl PlugFlowPipe {
     pub fn steady_ntu(&self, m_flow_kg_s: f64) -> f64 {
         match self.wall {
             Wall::Film(_) => self.loss_kg_s(m_flow_kg_s) / m_flow_kg_s.abs(),
-            // transit time over time constant
+            // Transit time over time constant; the former is infinite for a rounding error of a flow (1e-320 kg/s).
+            _ if self.loss_time_constant_s.is_infinite() => 0.0,
             _ => self.content_kg / m_flow_kg_s.abs() / self.loss_time_constant_s(m_flow_kg_s),
         }
     }
