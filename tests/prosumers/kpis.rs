@@ -78,6 +78,7 @@ name = "load"
 kind = "heat_load"
 temperature_difference_k = 5
 v_flow_min_l_min = 6
+supply_needed_degc = 42
 [[schedule]]
 signal = "house.load.load_w"
 points = [[0, 1000], [3600, 3000]]
@@ -92,8 +93,10 @@ fn a_street_by_hand() {
             |run: &Simulation| channel(run, "house.hot.p_pa") - channel(run, "house.cold.p_pa");
         let power_w = |run: &Simulation| channel(run, "plant.circulation_pump.power_w");
         let (before_pa, before_w) = (hot_over_cold(&run), power_w(&run));
+        let before_hot_pa = channel(&run, "plant.hot.p_pa");
         advance(&mut run, 7200.0, step_s);
         let (after_pa, after_w) = (hot_over_cold(&run), power_w(&run));
+        let after_hot_pa = channel(&run, "plant.hot.p_pa");
         let kpis = kpis(&run);
         let house = |name: &str, expected: f64, within: f64| {
             assert_is(&kpis, &["stations", "house.station", name], expected, within);
@@ -147,6 +150,21 @@ fn a_street_by_hand() {
         // H0 = 402.21 hPa, n = 1: (H0 - a V^2) V/(0.5 * 0.8) with a = H0/55.33^2: at 6 l/min 397.48 hPa, 9.937 W.
         assert!((before_w - 9.937).abs() < 1e-3, "{before_w}");
         grid("hottest_node_degc", 40.0, 1e-4);
+        // 40 degC for two hours where 42 are needed; all of the heat came.
+        assert_is(&kpis, &["units", "house.load", "shortfall_k_h"], 4.0, 1e-3);
+        grid("shortfall_k_h", 4.0, 1e-3);
+        grid("unmet_kwh", 0.0, 0.0);
+        // The return of the plant stays at its pressure; the hot line is above by what the pump gives, less with more flow.
+        let node = |name: &str, number: &str, expected: f64, within: f64| {
+            assert_is(&kpis, &["nodes", name, number], expected, within);
+        };
+        node("plant.cold", "p_min_bar", 1.5, 1e-9);
+        node("plant.cold", "p_max_bar", 1.5, 1e-9);
+        node("plant.hot", "p_max_bar", before_hot_pa / 1e5, 1e-9);
+        node("plant.hot", "p_min_bar", after_hot_pa / 1e5, 1e-9);
+        node("house.hot", "t_max_degc", 40.0, 1e-4);
+        node("house.cold", "t_min_degc", 35.0, 1e-3);
+        assert!(kpis["nodes"].as_object().unwrap().len() == 4, "{}", kpis["nodes"]);
         grid("coldest_node_degc", 35.0, 1e-3);
     }
 }

@@ -107,11 +107,20 @@ struct Extreme {
     t_k: f64,
 }
 
+/// Temperature, K, and pressure above the atmosphere, Pa, of a node at the ends of the steps.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct NodeRanges {
+    t_k: Range,
+    p_pa: Range,
+}
+
 /// What the indicators sum up: part of the state.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Sums {
     pub stations: Vec<StationSums>,
     units: Vec<UnitSums>,
+    /// Of the nodes of the grid: `Places::ranged`.
+    nodes: Vec<NodeRanges>,
     /// Electricity of each pump, J.
     pumps_j: Vec<f64>,
     coldest: Option<Extreme>,
@@ -130,6 +139,7 @@ impl Sums {
         Self {
             stations: vec![StationSums::default(); plan.stations.len()],
             units: vec![UnitSums::default(); plan.units.len()],
+            nodes: vec![NodeRanges::default(); plan.kpi_places.ranged.len()],
             pumps_j: vec![0.0; plan.pumps.len()],
             ..Self::default()
         }
@@ -139,6 +149,7 @@ impl Sums {
     pub(crate) fn heap_bytes(&self) -> usize {
         self.stations.capacity() * size_of::<StationSums>()
             + self.units.capacity() * size_of::<UnitSums>()
+            + self.nodes.capacity() * size_of::<NodeRanges>()
             + self.pumps_j.capacity() * size_of::<f64>()
     }
 
@@ -146,6 +157,7 @@ impl Sums {
     pub(crate) fn fits(&self, other: &Self) -> bool {
         self.stations.len() == other.stations.len()
             && self.units.len() == other.units.len()
+            && self.nodes.len() == other.nodes.len()
             && self.pumps_j.len() == other.pumps_j.len()
     }
 }
@@ -161,6 +173,8 @@ pub(crate) struct Places {
     booked: Vec<bool>,
     /// The output of each unit that says what it could not meet.
     unmet: Vec<Option<usize>>,
+    /// Nodes of the grid: those that are not within a station.
+    ranged: Vec<usize>,
 }
 
 impl Places {
@@ -192,12 +206,21 @@ impl Places {
             Some((end(edge.to.index())?, end(edge.from.index())?))
         });
         let booked = plan.units.iter().map(|unit| unit.slots.len() == 1 || unit.equipment.serves());
+        let mut grid = vec![false; plan.network.nodes.len()];
+        for (edge, place) in plan.network.edges.iter().zip(&plan.edges_on_map) {
+            if place.station.is_empty() {
+                grid[edge.from.index()] = true;
+                grid[edge.to.index()] = true;
+            }
+        }
+        let ranged = (0..grid.len()).filter(|node| grid[*node]);
         let unmet = plan.units.iter().map(|unit| unit.output("unmet_w"));
         Self {
             between: between.collect(),
             balances: plan.stations.iter().map(balances).collect(),
             booked: booked.collect(),
             unmet: unmet.collect(),
+            ranged: ranged.collect(),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! a given temperature difference; at least the by-pass flow, at most `v_flow_max_m3_s`. The water
 //! gives off `Q`, but is not cooled below `coldest_return_k`; what is missing is `unmet_w`. The emulator of a
 //! laboratory takes no more than `load_max_w`: 30 kW of heat at houses SF1 to SF4, 60 kW at MF5 (`zinsmeister2024`).
+//! With `supply_needed_k` it counts the shortfall of its supply, `sum max(T_needed - T_in, 0) dt` while heat is demanded.
 //!
 //! **Assumptions** no storage, no room: the load does not react. **Numerics** the flow follows from the
 //! temperature that arrived in the step before; the heat is exact with the flow of the present step, and the
@@ -47,6 +48,10 @@ pub struct HeatLoadParams {
     /// The water is not cooled below this, K.
     #[serde(default = "default_coldest_return")]
     pub coldest_return_k: f64,
+    /// Supply that the consumer needs, K: colder water while heat is demanded is counted as `shortfall_k_s` (indicator
+    /// `shortfall_k_h`). Absent: not counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supply_needed_k: Option<f64>,
 }
 
 fn default_v_flow_max() -> f64 {
@@ -67,6 +72,7 @@ impl Default for HeatLoadParams {
             v_flow_min_m3_s: 0.0,
             v_flow_max_m3_s: default_v_flow_max(),
             coldest_return_k: default_coldest_return(),
+            supply_needed_k: None,
         }
     }
 }
@@ -77,7 +83,7 @@ enum ReturnWater {
     Difference(f64),
 }
 
-/// A heat load ready to run. State: temperature that arrived last, K.
+/// A heat load ready to run. State: temperature that arrived last, K; shortfall of the supply so far, K s, where it is counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatLoad {
     load_w: f64,
@@ -86,6 +92,7 @@ pub struct HeatLoad {
     m_flow_min_kg_s: f64,
     m_flow_max_kg_s: f64,
     coldest_return_k: f64,
+    supply_needed_k: Option<f64>,
     medium: Medium,
 }
 
@@ -134,6 +141,10 @@ impl HeatLoadParams {
             m_flow_min_kg_s: self.v_flow_min_m3_s * medium.density_kg_m3,
             m_flow_max_kg_s: self.v_flow_max_m3_s * medium.density_kg_m3,
             coldest_return_k: super::liquid(medium, "coldest_return_k", self.coldest_return_k)?,
+            supply_needed_k: self
+                .supply_needed_k
+                .map(|t_k| super::liquid(medium, "supply_needed_k", t_k))
+                .transpose()?,
             medium: *medium,
         })
     }
@@ -168,17 +179,21 @@ impl ThermalUnit for HeatLoad {
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {
-        vec![
+        let mut outputs = vec![
             UnitOutput::new("q_flow_w", "W"),
             UnitOutput::new("m_flow_kg_s", "kg s-1"),
             UnitOutput::new("t_in_k", "K"),
             UnitOutput::new("t_out_k", "K"),
             UnitOutput::new("unmet_w", "W"),
-        ]
+        ];
+        outputs.extend(self.supply_needed_k.map(|_| UnitOutput::new("shortfall_k_s", "K s")));
+        outputs
     }
 
     fn initial_state(&self, initial_k: f64) -> Vec<f64> {
-        vec![initial_k]
+        let mut state = vec![initial_k];
+        state.extend(self.supply_needed_k.map(|_| 0.0));
+        state
     }
 
     fn request(
@@ -203,7 +218,7 @@ impl ThermalUnit for HeatLoad {
 
     fn advance(
         &self,
-        _dt_s: f64,
+        dt_s: f64,
         signals: &Signals<'_>,
         ports: &[PortFlow],
         state: &mut [f64],
@@ -216,6 +231,12 @@ impl ThermalUnit for HeatLoad {
         out[2] = t_in_k;
         out[3] = t_out_k;
         out[4] = (signals.get(0) + out[0]).max(0.0);
+        if let Some(needed_k) = self.supply_needed_k {
+            if signals.get(0) > 0.0 {
+                state[1] += (needed_k - t_in_k).max(0.0) * dt_s;
+            }
+            out[5] = state[1];
+        }
         Exchange { external_w: out[0], ..Exchange::default() }
     }
 }
@@ -240,6 +261,21 @@ mod tests {
         // Water of 283.15 K can give 0.079745 * 4180 * 5 = 1666.7 W before it is at 5 degC.
         let q_w = request(&unit, 283.15, 10_000.0).outlet.heat_flow_w().unwrap();
         assert!((q_w + 1666.7).abs() < 0.1, "{q_w}");
+    }
+
+    #[test]
+    fn a_supply_that_is_too_cold_is_counted() {
+        let params = HeatLoadParams { supply_needed_k: Some(333.15), ..HeatLoadParams::default() };
+        let unit = params.build(&Medium::default()).unwrap();
+        let (mut state, mut out) = (unit.initial_state(340.0), vec![0.0; unit.outputs().len()]);
+        // An hour 2 K short, an hour 5 K short without demand, an hour 1 K above: 2 K h.
+        for (t_in_k, load_w) in [(331.15, 1000.0), (328.15, 0.0), (334.15, 1000.0)] {
+            let got = PortFlow { m_flow_kg_s: -0.1, t_in_k, t_out_k: t_in_k - 2.0 };
+            unit.advance(3600.0, &Signals(&[load_w]), &[got], &mut state, &mut out);
+        }
+        assert!((out[5] / 3600.0 - 2.0).abs() < 1e-12, "{}", out[5]);
+        let boiling = HeatLoadParams { supply_needed_k: Some(600.0), ..params };
+        assert!(boiling.build(&Medium::default()).is_err());
     }
 
     #[test]

@@ -23,7 +23,7 @@ def kpis(result: Result) -> dict[str, float]:
     found = _key_results(result)
     told = result.summary.get("kpis", {})
     groups = [{"network": told.get("network", {})}]
-    groups += [told.get(name, {}) for name in ("sites", "stations", "units")]
+    groups += [told.get(name, {}) for name in ("nodes", "sites", "stations", "units")]
     for group in groups:
         for component, numbers in group.items():
             for name, value in numbers.items():

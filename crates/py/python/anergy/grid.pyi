@@ -2480,6 +2480,8 @@ class _Unit:
         v_flow_max_m3_h: float | None = None,
         coldest_return_k: float | None = None,
         coldest_return_degc: float | None = None,
+        supply_needed_k: float | None = None,
+        supply_needed_degc: float | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "heat_load".
 
@@ -2514,6 +2516,9 @@ class _Unit:
             v_flow_max_m3_h.
         coldest_return_k
             The water is not cooled below this, K. Default: 278.15. Also coldest_return_degc.
+        supply_needed_k
+            Supply that the consumer needs, K: colder water while heat is demanded is counted as
+            `shortfall_k_s` (indicator `shortfall_k_h`). Absent: not counted. Also supply_needed_degc.
         """
     def heat_source(
         self,

@@ -42,6 +42,10 @@ pub(crate) fn book(plan: &Plan, state: &mut State, transport: &Transport, dt_s: 
     sums.demand_cold_j += cold_w * dt_s;
     sums.coincident_j += f64::min(heat_w, cold_w) * dt_s;
     book_nodes(network, sums);
+    for (node, ranges) in places.ranged.iter().zip(&mut sums.nodes) {
+        ranges.t_k.see(network.t_node_k[*node]);
+        ranges.p_pa.see(network.p_pa[*node]);
+    }
     let ground_k = state.signals[plan.ground.index()];
     sums.mixing_j += ground_k * transport.mixing_w_k(&plan.network, network) * dt_s;
     let cp = plan.network.medium.heat_capacity_j_kg_k;

@@ -48,6 +48,7 @@ pub(crate) fn kpis(simulation: &Simulation) -> Value {
         .collect();
     json!({
         "network": network(plan, state),
+        "nodes": nodes(plan, state),
         "sites": sites,
         "stations": stations,
         "units": units,
@@ -215,6 +216,7 @@ fn units(plan: &Plan, state: &State, sites: &mut BTreeMap<&str, Site>) -> Number
             ("fuel_cost_eur", output("fuel_cost_eur"), 1.0),
             ("revenue_eur", output("revenue_eur"), 1.0),
             ("cost_eur", cost_eur, 1.0),
+            ("shortfall_k_h", output("shortfall_k_s"), S_PER_H),
             ("unmet_kwh", plan.kpi_places.unmet[i].map(|_| sums.unmet_j), J_PER_KWH),
         ];
         for (name, value, per) in shown {
@@ -267,6 +269,22 @@ fn cost_eur(unit: &PlannedUnit, state: &State) -> Option<f64> {
     Some(eur("electricity_cost_eur")? + eur("fuel_cost_eur")? - eur("revenue_eur")?)
 }
 
+/// Ranges of the nodes of the grid.
+fn nodes(plan: &Plan, state: &State) -> Numbers {
+    let mut all = Numbers::new();
+    for (node, ranges) in plan.kpi_places.ranged.iter().zip(&state.kpis.nodes) {
+        let mut to = Numbers::new();
+        if let (Some(t_k), Some(p_pa)) = (ranges.t_k.seen(), ranges.p_pa.seen()) {
+            add(&mut to, "t_min_degc", degc(t_k.0));
+            add(&mut to, "t_max_degc", degc(t_k.1));
+            add(&mut to, "p_min_bar", p_pa.0 / PA_PER_BAR);
+            add(&mut to, "p_max_bar", p_pa.1 / PA_PER_BAR);
+        }
+        all.insert(plan.node_names[*node].to_string(), Value::Object(to));
+    }
+    all
+}
+
 fn network(plan: &Plan, state: &State) -> Numbers {
     let (sums, mut to) = (&state.kpis, Numbers::new());
     let given_j: f64 = sums.stations.iter().map(|station| station.given_j).sum();
@@ -306,6 +324,14 @@ fn network(plan: &Plan, state: &State) -> Numbers {
         add(&mut to, &format!("{which}_node_degc"), degc(extreme.t_k));
         to.insert(format!("{which}_node"), json!(plan.node_names[extreme.node]));
     }
+    let unmet_j =
+        plan.kpi_places.unmet.iter().zip(&sums.units).filter(|(place, _)| place.is_some());
+    if let Some(unmet_j) = unmet_j.map(|(_, unit)| unit.unmet_j).reduce(f64::add) {
+        add(&mut to, "unmet_kwh", unmet_j / J_PER_KWH);
+    }
+    let shortfalls = plan.units.iter().filter_map(|unit| unit.output("shortfall_k_s"));
+    let shortfall_k_s = shortfalls.map(|place| state.unit_outputs[place]).reduce(f64::add);
+    add(&mut to, "shortfall_k_h", shortfall_k_s.map_or(f64::NAN, |k_s| k_s / S_PER_H));
     let costs_eur = plan.units.iter().filter_map(|unit| cost_eur(unit, state)).reduce(f64::add);
     add(&mut to, "cost_eur", costs_eur.unwrap_or(f64::NAN));
     let blocked_s: f64 = state.stations.iter().map(|station| station.blocked_s).sum();
