@@ -1,7 +1,7 @@
 //! The table of measurements: a time in s, an optional `run`, a column per sensor; an empty cell is missing.
 
 use crate::error::ExplainError;
-use crate::sensors::SensorFile;
+use crate::sensors::{Role, SensorFile};
 
 /// Readings of one column of one run, in SI, where there is one.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,9 +127,15 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
     }
     for run in &mut runs {
         for (track, sensor) in run.tracks.iter_mut().zip(&sensors.sensor) {
-            if sensor.si() == "k" {
-                *track = without_held(track, sensor.difference_to_si(sensor.quantisation));
-            }
+            let resolution = sensor.difference_to_si(sensor.quantisation).abs();
+            let least = match sensor.si().as_str() {
+                "k" => JUMP_K,
+                "pa" | "kg_s" | "m3_s" if sensor.role == Role::Compare && resolution > 0.0 => {
+                    JUMP * track.value.iter().fold(0.0_f64, |most, y| most.max(y.abs()))
+                }
+                _ => continue,
+            };
+            *track = without_held(track, resolution, least);
         }
     }
     for run in &runs {
@@ -148,20 +154,25 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
 
 /// Readings that hold before one isolated jump were held by the logger: all but the first of them are missing.
 const HELD: usize = 3;
-/// A jump is this many times the resolution, and at least so large, K.
-const JUMP: (f64, f64) = (10.0, 0.5);
+/// A jump is this many times the resolution ...
+const STEPS: f64 = 10.0;
+/// ... and at least so large, K ...
+const JUMP_K: f64 = 0.5;
+/// ... or, of a pressure or a flow, this share of the largest reading.
+const JUMP: f64 = 0.05;
 
-/// A temperature without the readings that a logger has held.
-fn without_held(track: &Track, resolution_k: f64) -> Track {
+/// A quantity without the readings that a logger has held before a jump of at least `least`; nothing may stay nothing for long.
+fn without_held(track: &Track, resolution: f64, least: f64) -> Track {
     let (t, y) = (&track.time_s, &track.value);
-    let least = (JUMP.0 * resolution_k).max(JUMP.1);
+    let least = least.max(STEPS * resolution);
     let mut kept = Track { time_s: Vec::new(), value: Vec::new() };
     let mut from = 0;
     while from < y.len() {
         let end = (from..y.len()).find(|&i| y[i] != y[from]).unwrap_or(y.len());
         let jump = y.get(end).map_or(0.0, |next| (next - y[from]).abs());
         let goes_on = y.get(end + 1).map_or(0.0, |next| (next - y[end]).abs());
-        let held = end - from >= HELD && jump > least && goes_on < 0.3 * jump;
+        let rests = y[from].abs() <= resolution;
+        let held = !rests && end - from >= HELD && jump > least && goes_on < 0.3 * jump;
         let until = if held { from + 1 } else { end };
         kept.time_s.extend(&t[from..until]);
         kept.value.extend(&y[from..until]);
@@ -197,15 +208,17 @@ mod tests {
             value: value.to_vec(),
         };
         // Rising, held at 22, and back on its way at 27.
-        let held = without_held(&track(&[20.0, 21.0, 22.0, 22.0, 22.0, 22.0, 27.0, 28.0]), 0.1);
+        let held =
+            without_held(&track(&[20.0, 21.0, 22.0, 22.0, 22.0, 22.0, 27.0, 28.0]), 0.1, JUMP_K);
         assert_eq!(held.value, [20.0, 21.0, 22.0, 27.0, 28.0]);
         assert_eq!(held.time_s, [0.0, 1.0, 2.0, 6.0, 7.0]);
-        // A plateau before a front, and one of the resolution.
+        // A plateau before a front, one of the resolution, and a pause.
         for plain in [
             &[20.0, 20.0, 20.0, 20.0, 25.0, 30.0, 35.0],
             &[20.0, 20.0, 20.0, 20.0, 20.1, 20.1, 20.2],
+            &[9.0, 0.0, 0.0, 0.0, 0.0, 9.0, 9.1],
         ] {
-            assert_eq!(without_held(&track(plain), 0.1), track(plain));
+            assert_eq!(without_held(&track(plain), 0.1, JUMP_K), track(plain));
         }
     }
 
