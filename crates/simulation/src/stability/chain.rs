@@ -83,9 +83,9 @@ impl Chain {
         }
         let step = exponential(&rates);
         let (mut phi, mut gamma) = ([[0.0; MOST]; MOST], [0.0; MOST]);
-        for i in 0..n {
-            gamma[i] = step[i][n];
-            phi[i][..n].copy_from_slice(&step[i][..n]);
+        for ((phi, gamma), step) in phi.iter_mut().zip(&mut gamma).zip(&step).take(n) {
+            *gamma = step[n];
+            phi[..n].copy_from_slice(&step[..n]);
         }
         (phi, gamma)
     }
@@ -126,9 +126,9 @@ impl SampledChain {
         let (row, row_rest) = (&self.phi[last], &self.phi_rest[last]);
         let mut before = C64::new(self.gamma[last], 0.0);
         let mut rest = C64::new(self.gamma_rest[last], 0.0);
-        for k in 0..self.ahead {
-            before += ahead[k] * row[k];
-            rest += ahead[k] * row_rest[k];
+        for ((v, now), later) in ahead[..self.ahead].iter().zip(row).zip(row_rest) {
+            before += v * now;
+            rest += v * later;
         }
         if self.n > self.ahead {
             rest += before * behind * row_rest[last];
