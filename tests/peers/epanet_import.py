@@ -168,8 +168,8 @@ Where `solve` fails with ideal pressure valves the import is repeated with `--se
 - anytown-exeter, Anytown (wntr), gessler1985, hanoi-exeter: templates of design problems. Their pipes to be sized
   have 0.0001 to 0.0025 mm; demands lie behind them, and no pressure that means anything drives them. EPANET gives
   heads below minus 1e24 m.
-- BWSN_Network_2, and ky15 with `--self-acting`: the hydraulics are solved; the matrix of the steady
-  temperatures is singular. Ideal sustaining valves of ky15 determine each other.
+- ky15: its ideal sustaining valves determine each other. With `--self-acting` all flows agree to 1e-3; behind closed valves
+  (J-328, J-394, J-465 and others) nothing determines the heads, and they differ.
 - ky9, ky10, ky11, ky12, Richmond_standard, MICROPOLIS: EPANET switches a valve or a pump to and fro for 1000 trials;
   what it leaves there is no solution to compare with.
 - prv_closed_no_upstream_sources: valve and pump are closed in EPANET, and the demands beyond them have heads of
