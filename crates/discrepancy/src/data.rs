@@ -128,14 +128,15 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
     for run in &mut runs {
         for (track, sensor) in run.tracks.iter_mut().zip(&sensors.sensor) {
             let resolution = sensor.difference_to_si(sensor.quantisation).abs();
-            let least = match sensor.si().as_str() {
-                "k" => JUMP_K,
+            let (least, most) = match sensor.si().as_str() {
+                "k" => (JUMP_K, usize::MAX),
                 "pa" | "kg_s" | "m3_s" if sensor.role == Role::Compare && resolution > 0.0 => {
-                    JUMP * track.value.iter().fold(0.0_f64, |most, y| most.max(y.abs()))
+                    let largest = track.value.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+                    (JUMP * largest, STEADY)
                 }
                 _ => continue,
             };
-            *track = without_held(track, resolution, least);
+            *track = without_held(track, resolution, least, most);
         }
     }
     for run in &runs {
@@ -154,6 +155,8 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
 
 /// Readings that hold before one isolated jump were held by the logger: all but the first of them are missing.
 const HELD: usize = 3;
+/// A pressure or a flow that stays for more readings than this is steady.
+const STEADY: usize = 12;
 /// A jump is this many times the resolution ...
 const STEPS: f64 = 10.0;
 /// ... and at least so large, K ...
@@ -161,8 +164,8 @@ const JUMP_K: f64 = 0.5;
 /// ... or, of a pressure or a flow, this share of the largest reading.
 const JUMP: f64 = 0.05;
 
-/// A quantity without the readings that a logger has held before a jump of at least `least`; nothing may stay nothing for long.
-fn without_held(track: &Track, resolution: f64, least: f64) -> Track {
+/// A quantity without the readings that a logger has held before a jump of at least `least`, at most `most` of them; nothing may stay nothing for long.
+fn without_held(track: &Track, resolution: f64, least: f64, most: usize) -> Track {
     let (t, y) = (&track.time_s, &track.value);
     let least = least.max(STEPS * resolution);
     let mut kept = Track { time_s: Vec::new(), value: Vec::new() };
@@ -172,7 +175,8 @@ fn without_held(track: &Track, resolution: f64, least: f64) -> Track {
         let jump = y.get(end).map_or(0.0, |next| (next - y[from]).abs());
         let goes_on = y.get(end + 1).map_or(0.0, |next| (next - y[end]).abs());
         let rests = y[from].abs() <= resolution;
-        let held = !rests && end - from >= HELD && jump > least && goes_on < 0.3 * jump;
+        let few = (HELD..=most).contains(&(end - from));
+        let held = !rests && few && jump > least && goes_on < 0.3 * jump;
         let until = if held { from + 1 } else { end };
         kept.time_s.extend(&t[from..until]);
         kept.value.extend(&y[from..until]);
@@ -208,8 +212,12 @@ mod tests {
             value: value.to_vec(),
         };
         // Rising, held at 22, and back on its way at 27.
-        let held =
-            without_held(&track(&[20.0, 21.0, 22.0, 22.0, 22.0, 22.0, 27.0, 28.0]), 0.1, JUMP_K);
+        let held = without_held(
+            &track(&[20.0, 21.0, 22.0, 22.0, 22.0, 22.0, 27.0, 28.0]),
+            0.1,
+            JUMP_K,
+            usize::MAX,
+        );
         assert_eq!(held.value, [20.0, 21.0, 22.0, 27.0, 28.0]);
         assert_eq!(held.time_s, [0.0, 1.0, 2.0, 6.0, 7.0]);
         // A plateau before a front, one of the resolution, and a pause.
@@ -218,7 +226,7 @@ mod tests {
             &[20.0, 20.0, 20.0, 20.0, 20.1, 20.1, 20.2],
             &[9.0, 0.0, 0.0, 0.0, 0.0, 9.0, 9.1],
         ] {
-            assert_eq!(without_held(&track(plain), 0.1, JUMP_K), track(plain));
+            assert_eq!(without_held(&track(plain), 0.1, JUMP_K, usize::MAX), track(plain));
         }
     }
 

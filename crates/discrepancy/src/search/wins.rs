@@ -1,5 +1,6 @@
 //! When an effect is more than what tolerances, noise and the flaws of a model would show.
 
+use super::BEYOND;
 use crate::explain::Finding;
 
 /// Evidence by which an effect must beat the model without it, nats.
@@ -41,6 +42,8 @@ pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
 pub(super) fn adds(f: &Finding, taken: usize) -> bool {
     match taken {
         0 => true,
+        // What has to be out of its range is no explanation: so much is left for `unexplained`.
+        _ if f.beyond > BEYOND => false,
         1 => f.elpd > FORETELLS.1 * f.elpd_error,
         _ => f.evidence > STRAINS && foretells(f),
     }
