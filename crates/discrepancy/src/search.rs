@@ -17,7 +17,7 @@ use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::unknown::Unknown;
 use nalgebra::DVector;
-use wins::{STRAINS, WINS, adds, together, wins};
+use wins::{STRAINS, WINS, adds, together};
 
 /// The likelihood is taken to the power of one over this ...
 const TEMPERATURE: f64 = 1.0;
@@ -56,6 +56,8 @@ const TOO_MUCH: f64 = 4.0;
 const CLOSE: f64 = 8.0;
 const MOST_CLOSE: usize = 4;
 const MOST_EFFECTS: usize = 5;
+/// More effects than these at once are rather one cause that is not in the catalogue.
+const MOST_TOGETHER: usize = 2;
 /// Candidates that are compared in earnest after the first look.
 const MOST_COMPARED: usize = 6;
 /// Pairs that are compared in earnest, and candidates of which they are made.
@@ -188,8 +190,9 @@ impl<'a> Search<'a> {
                 }
             }
             let named = matches!(settled.verdict, Verdict::Named | Verdict::Class);
-            let wins = |f: &Finding| wins(f, round.null_z) && adds(f, self.taken.len());
-            if !(named && round.findings.first().is_some_and(wins)) {
+            let adds = |f: &Finding| adds(f, self.taken.len());
+            let next = named && round.findings.first().is_some_and(adds);
+            if !next || self.likely(&round, worst).is_empty() {
                 first = first.or_else(|| self.first(round));
                 break;
             }
@@ -220,12 +223,13 @@ impl<'a> Search<'a> {
         Ok(settled)
     }
 
-    /// Effects that leave far too much are not the cause; nor do two sensors begin to drift at once where one cause of the plant may.
+    /// Effects that leave far too much are not the cause; nor do two sensors begin to drift at once where one cause of the plant may,
+    /// or three effects show for the first time together.
     fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let Some((unknowns, at)) = &settled.chosen else { return Ok(()) };
         let z = self.z(&self.experiment.readings(unknowns, at)?);
         let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
-        if z > TOO_MUCH || drifts > 1 {
+        if z > TOO_MUCH || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
             let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
             let names: Vec<String> = names.collect();
             let best = format!("the best that was found, {}", names.join(" and "));
@@ -233,8 +237,13 @@ impl<'a> Search<'a> {
                 format!(
                     "{best}, would be {drifts} drifts or jumps of sensors: rather one cause of the plant that is not in the catalogue"
                 )
-            } else {
+            } else if z > TOO_MUCH {
                 format!("{best}, leaves residuals of {z:.1} standard deviations")
+            } else {
+                format!(
+                    "{best}, would be {} effects at once: rather one cause that is not in the catalogue",
+                    settled.effects.len()
+                )
             };
             settled.verdict = Verdict::Unexplained;
             settled.effects.clear();

@@ -1,6 +1,6 @@
 //! The verdict of the first round.
 
-use super::wins::{foretells, surely_foretells, together, wins};
+use super::wins::{EVEN, foretells, surely_foretells, together, wins};
 use super::{
     BEYOND, DIFFERS, EXPLAINED, LEAVES, PARALLEL, Round, Search, Settled, TAKES, UNEXPLAINED,
     excess, prior,
@@ -9,11 +9,20 @@ use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;
 
 impl Search<'_> {
-    /// The verdict of the first round.
-    pub(super) fn conclude(&self, round: &Round, worst: f64, settled: &mut Settled) {
+    /// What could be added next, with what these data do not tell from it. Empty where that is no more probable than that chance
+    /// shows the best of all that was looked at; where residuals are beyond chance something is missing, however improbable each.
+    pub(super) fn likely(&self, round: &Round, worst: f64) -> Vec<Finding> {
         let parallel: Vec<bool> =
             round.tried.iter().map(|t| cosine(&round.tried[0], t) > PARALLEL).collect();
-        settled.class = class(&round.findings, &parallel, round.null_z);
+        let class = class(&round.findings, &parallel, round.null_z);
+        let probability: f64 = class.iter().map(|f| f.probability).sum();
+        let by_chance = probability <= EVEN && round.null_z.max(worst) < UNEXPLAINED;
+        if by_chance { Vec::new() } else { class }
+    }
+
+    /// The verdict of the first round.
+    pub(super) fn conclude(&self, round: &Round, worst: f64, settled: &mut Settled) {
+        settled.class = self.likely(round, worst);
         (settled.verdict, settled.because) =
             verdict(&round.findings, settled.class.len(), round.null_z, worst);
     }
@@ -51,7 +60,7 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
     let Some(winner) = findings.first() else {
         return (Verdict::Unexplained, "no effect of the catalogue could be tried".into());
     };
-    if !wins(winner, null_z) {
+    if members == 0 {
         return if null_z.max(worst) < UNEXPLAINED {
             (
                 Verdict::Nothing,

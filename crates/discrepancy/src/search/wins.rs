@@ -25,6 +25,9 @@ pub(super) const TOGETHER: f64 = 3.0;
 /// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
 const NEARLY: f64 = 0.15;
 
+/// Probability above which an effect, or a class of them, is named.
+pub(super) const EVEN: f64 = 0.5;
+
 /// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
 pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
     let sure = f.evidence > SURE
