@@ -21,20 +21,17 @@ use wins::{STRAINS, WINS, adds, together};
 
 /// The likelihood is taken to the power of one over this ...
 const TEMPERATURE: f64 = 1.0;
-/// ... or over this times the root of the nats that the best effect gains: the more there is to explain, the more the flaws of
-/// what explains it weigh. (Residuals that are not what they are taken for have been learned: [`Likelihood::learn`].)
+/// ... or over this times the root of the nats that the best effect gains: the more is explained, the more its flaws weigh.
 const LOUD: f64 = 0.125;
 /// An effect that brings less than this is taken out again, nats.
 const KEEPS: f64 = 2.0;
-/// Effects whose residuals on samples that were not fitted are so many times those of the best, and take away so much less
-/// of the discrepancy there, are refuted.
+/// Effects whose residuals on samples not fitted are so many times the best one's, and take away so much less, are refuted.
 const AS_WELL: (f64, f64) = (2.0, 0.25);
 /// An effect that lies so many standard deviations from the middle of its range is no explanation.
 const BEYOND: f64 = 3.0;
 /// Odds are taken to the power of one over this for a probability ...
 const WARM: f64 = 3.0;
-/// ... of which this share belongs to causes that were tried: both so that what is stated is about how often it was right in
-/// cases of development.
+/// ... of which this share belongs to causes that were tried: so that in cases of development it is how often a name was right.
 const TRIED: f64 = 0.9;
 /// Values within so many standard deviations of what is plausible are equally so.
 const PLAUSIBLE: f64 = 2.0;
