@@ -44,6 +44,49 @@ pub fn weekend(day: i64) -> bool {
     (day + 3).rem_euclid(7) >= 5
 }
 
+/// The calendar of people: Saturdays, Sundays and holidays are days off.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DaysOff {
+    /// Local clock ahead of UTC, s.
+    pub utc_offset_s: f64,
+    /// Days since 1970-01-01.
+    pub holidays: Vec<i64>,
+}
+
+impl DaysOff {
+    /// Whether nobody works on a day.
+    pub fn is_off(&self, day: i64) -> bool {
+        weekend(day) || self.holidays.contains(&day)
+    }
+}
+
+/// Days from 1970-01-01 to a date written `2024-12-25`; `None` where it is no date of the Gregorian calendar.
+pub fn day_of_date(text: &str) -> Option<i64> {
+    let mut parts = text.split('-');
+    let mut next = |digits: usize| {
+        let part = parts.next().filter(|part| part.len() == digits)?;
+        part.parse::<u32>().ok().map(i64::from)
+    };
+    let (year, month, day) = (next(4)?, next(2)?, next(2)?);
+    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let longest = match month {
+        2 => 28 + i64::from(leap),
+        4 | 6 | 9 | 11 => 30,
+        1..=12 => 31,
+        _ => return None,
+    };
+    if parts.next().is_some() || !(1..=longest).contains(&day) {
+        return None;
+    }
+    // Years from March on: 153 days in five months; day 719 468 is 1970-01-01.
+    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let of_year = (153 * month + 2) / 5 + day - 1;
+    Some(
+        365 * year + year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400) + of_year
+            - 719_468,
+    )
+}
+
 /// `cos(2 pi (d - d_0)/year)` of a day, with the day of the year of the maximum.
 pub fn season(day: i64, maximum_day: f64) -> f64 {
     season_rad(day, maximum_day).cos()
@@ -88,6 +131,32 @@ mod tests {
         let moment = Moment::after(start_s, 3600.0, 3.0 * DAY_S);
         assert_eq!((moment.day, moment.time_s), (19_760, 1800.0));
         assert!((season(45, 45.0) - 1.0).abs() < 1e-12 && season(228, 45.0) < -0.99);
+    }
+
+    #[test]
+    fn dates_by_hand() {
+        for (text, day) in [
+            ("1970-01-01", Some(0)),
+            ("1970-03-01", Some(59)),
+            ("2000-02-29", Some(11_016)),
+            ("2024-02-03", Some(19_756)),
+            ("2024-02-30", None),
+            ("1900-02-29", None),
+            ("2024-13-01", None),
+            ("2024-2-3", None),
+            ("24.12.2024", None),
+            ("2024-12-25-1", None),
+        ] {
+            assert_eq!(day_of_date(text), day, "{text}");
+        }
+        let days = DaysOff { holidays: vec![19_754], ..DaysOff::default() };
+        // A Thursday that is one, the Friday after it, Saturday, Monday.
+        assert!(
+            days.is_off(19_754)
+                && !days.is_off(19_755)
+                && days.is_off(19_756)
+                && !days.is_off(19_758)
+        );
     }
 
     #[test]

@@ -30,8 +30,8 @@ const COMFORT_DAY_S: (f64, f64) = (21_600.0, 82_800.0);
 pub struct Comfort {
     /// Set point that holds at night at most, K.
     pub night_k: Option<f64>,
-    /// When the night begins and ends, s after midnight.
-    pub night_s: (f64, f64),
+    /// When the night begins and ends, s after midnight: on workdays, on days off.
+    pub nights_s: [(f64, f64); 2],
     /// Set point while nobody is there, K.
     pub absent_k: Option<f64>,
     /// Between shut and open, K.
@@ -52,13 +52,14 @@ pub fn within_day(time_s: f64, (from_s, until_s): (f64, f64)) -> bool {
 }
 
 impl Comfort {
-    /// Set point of heating, K, from the reference, the presence (0 to 1) and the time of day.
-    pub fn set_k(&self, reference_k: f64, presence: f64, time_s: f64) -> f64 {
+    /// Set point of heating, K, from the reference, the presence (0 to 1), the time of day and whether it is a day off.
+    pub fn set_k(&self, reference_k: f64, presence: f64, time_s: f64, off: bool) -> f64 {
+        let night_s = self.nights_s[usize::from(off)];
         let by_presence = self.absent_k.map_or(reference_k, |absent_k| {
             absent_k + (reference_k - absent_k) * presence.clamp(0.0, 1.0)
         });
         match self.night_k {
-            Some(night_k) if within_day(time_s, self.night_s) => by_presence.min(night_k),
+            Some(night_k) if within_day(time_s, night_s) => by_presence.min(night_k),
             _ => by_presence,
         }
     }
@@ -101,7 +102,7 @@ mod tests {
 
     const COMFORT: Comfort = Comfort {
         night_k: Some(291.15),
-        night_s: (82_800.0, 21_600.0),
+        nights_s: [(82_800.0, 21_600.0), (1800.0, 28_800.0)],
         absent_k: Some(292.15),
         band_k: 1.0,
         reset_s: 0.0,
@@ -120,7 +121,7 @@ mod tests {
             (290.15, 1.0, 3.0, 290.15),
             (294.15, 7.0, 12.0, 294.15),
         ] {
-            let set_k = COMFORT.set_k(reference_k, presence, hour * 3600.0);
+            let set_k = COMFORT.set_k(reference_k, presence, hour * 3600.0, false);
             assert!((set_k - wanted_k).abs() < 1e-12, "{hour}: {set_k}");
         }
     }

@@ -14,6 +14,7 @@
 //! **Sources** `prohmo`, `vdi6007`, `loga2015`.
 
 mod build;
+mod input;
 mod params;
 mod sun;
 
@@ -22,7 +23,8 @@ pub use params::{BuildingParams, EmitterKind};
 use crate::building::comfort::{Comfort, DAY_S, discomfort_k, running_mean_k};
 use crate::building::emitter::{CELLS, Emitter, Passage, Stream};
 use crate::building::house::{House, HouseModel, Input, Output, STATES};
-use crate::thermal_unit::{Exchange, ThermalUnit, UnitInput, UnitOutput, UnitPort};
+use crate::calendar::{DaysOff, Moment};
+use crate::thermal_unit::{Exchange, START_UNIX, ThermalUnit, UnitInput, UnitOutput, UnitPort};
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
 use anergy_core::solar::{HorizontalIrradiance, SunPosition};
@@ -41,7 +43,7 @@ mod at {
     pub const CONDUCTANCE: usize = AFTER;
     /// Running mean of the outdoor temperature, K; 0 before the first step.
     pub const MEAN_OUTDOOR: usize = AFTER + 1;
-    /// Time of day, s.
+    /// Time of day, or with days off time since the start, s.
     pub const TIME: usize = AFTER + 2;
     /// Integral parts of the thermostats.
     pub const HEATING: usize = AFTER + 3;
@@ -61,24 +63,6 @@ mod at {
 /// The step length that the first request is made for: long, so that the emitter is not overfilled, s.
 const FIRST_STEP_S: f64 = 3600.0;
 
-/// Inputs in their order.
-mod input {
-    pub const ROOM_SET: usize = 0;
-    pub const COOLING_SET: usize = 1;
-    pub const PRESENCE: usize = 2;
-    pub const APPLIANCES: usize = 3;
-    pub const CELLAR: usize = 4;
-    pub const HEATING_ENABLED: usize = 5;
-    pub const COOLING_ENABLED: usize = 6;
-    pub const OUTDOOR: usize = 7;
-    pub const GROUND: usize = 8;
-    pub const GLOBAL: usize = 9;
-    pub const BEAM: usize = 10;
-    pub const DIFFUSE: usize = 11;
-    pub const ELEVATION: usize = 12;
-    pub const AZIMUTH: usize = 13;
-}
-
 /// Half open at the set point.
 const AT_SET_POINT: f64 = 0.5;
 
@@ -89,6 +73,7 @@ pub struct Building {
     model: Box<HouseModel>,
     emitter: Emitter,
     comfort: Comfort,
+    days_off: Option<DaysOff>,
     sun: Sun,
     /// Air exchange that people add, W/K.
     more_exchange_w_k: f64,
@@ -112,9 +97,21 @@ struct Wish {
 }
 
 impl Building {
+    /// The moment at which a step begins: of the calendar, where days off matter, else of a day of its own.
+    fn moment(&self, signals: &Signals<'_>, state: &[f64]) -> Moment {
+        match &self.days_off {
+            Some(days) => {
+                Moment::after(signals.get(input::START), days.utc_offset_s, state[at::TIME])
+            }
+            None => Moment { day: 0, time_s: state[at::TIME] },
+        }
+    }
+
     fn wish(&self, signals: &Signals<'_>, state: &[f64]) -> Wish {
         let presence = signals.get(input::PRESENCE);
-        let set_k = self.comfort.set_k(signals.get(input::ROOM_SET), presence, state[at::TIME]);
+        let Moment { day, time_s } = self.moment(signals, state);
+        let off = self.days_off.as_ref().is_some_and(|days| days.is_off(day));
+        let set_k = self.comfort.set_k(signals.get(input::ROOM_SET), presence, time_s, off);
         let (heating_k, cooling_k) = (set_k - state[0], state[0] - signals.get(input::COOLING_SET));
         let mean_k = state[at::MEAN_OUTDOOR];
         let season =
@@ -217,6 +214,7 @@ impl ThermalUnit for Building {
             weather("diffuse_w_m2", "w_m2", 0.0, POSITIVE, "weather.diffuse_horizontal_w_m2"),
             weather("sun_elevation_rad", "rad", 0.0, ANY, "weather.sun_elevation_rad"),
             weather("sun_azimuth_rad", "rad", 0.0, ANY, "weather.sun_azimuth_rad"),
+            weather("start_unix_s", "s", 0.0, ANY, START_UNIX),
         ]
     }
 
@@ -261,7 +259,7 @@ impl ThermalUnit for Building {
         ));
         state[at::CELLS_K].fill(p.initial_living_k);
         state[at::CONDUCTANCE] = self.emitter.conductance_w_k(0.0);
-        state[at::TIME] = p.start_time_s % DAY_S;
+        state[at::TIME] = if self.days_off.is_some() { 0.0 } else { p.start_time_s % DAY_S };
         state[at::HEATING] = AT_SET_POINT;
         state[at::COOLING] = AT_SET_POINT;
         state[at::STEP] = FIRST_STEP_S;
@@ -348,11 +346,12 @@ impl ThermalUnit for Building {
             let mean_k = state[at::MEAN_OUTDOOR];
             state[at::MEAN_OUTDOOR] =
                 running_mean_k(dt_s, outdoor_k, if mean_k > 0.0 { mean_k } else { outdoor_k });
-            let (cold_k, warm_k) = discomfort_k(t_room_k, state[at::TIME]);
+            let (cold_k, warm_k) = discomfort_k(t_room_k, self.moment(signals, state).time_s);
             state[at::DC_HEAT] += dt_s * cold_k;
             state[at::DC_COOL] += dt_s * warm_k;
             let time_s = state[at::TIME] + dt_s;
-            state[at::TIME] = if time_s < DAY_S { time_s } else { time_s % DAY_S };
+            let wraps = time_s >= DAY_S && self.days_off.is_none();
+            state[at::TIME] = if wraps { time_s % DAY_S } else { time_s };
             state[at::HEATING] = self.comfort.integral(dt_s, wish.heating_k, state[at::HEATING]);
             state[at::COOLING] = self.comfort.integral(dt_s, wish.cooling_k, state[at::COOLING]);
             state[at::STEP] = dt_s;

@@ -4975,6 +4975,19 @@ class _Unit:
         night_until_min: float | None = None,
         night_until_h: float | None = None,
         night_until_d: float | None = None,
+        night_off_from_s: float | None = None,
+        night_off_from_min: float | None = None,
+        night_off_from_h: float | None = None,
+        night_off_from_d: float | None = None,
+        night_off_until_s: float | None = None,
+        night_off_until_min: float | None = None,
+        night_off_until_h: float | None = None,
+        night_off_until_d: float | None = None,
+        holidays: Sequence[str] | None = None,
+        utc_offset_s: float | None = None,
+        utc_offset_min: float | None = None,
+        utc_offset_h: float | None = None,
+        utc_offset_d: float | None = None,
         start_time_s: float | None = None,
         start_time_min: float | None = None,
         start_time_h: float | None = None,
@@ -5109,6 +5122,19 @@ class _Unit:
         night_until_s
             When the night ends, s after midnight. Default: 21600.0. Also night_until_min, night_until_h,
             night_until_d.
+        night_off_from_s
+            When the night of Saturdays, Sundays and holidays begins, s after midnight. With it or
+            `night_off_until_s` the days and the time of day are those of the calendar: `start` of the run and
+            `utc_offset_s`; a night is that of the day it is in. Also night_off_from_min, night_off_from_h,
+            night_off_from_d.
+        night_off_until_s
+            When the night of these days ends, s after midnight. Also night_off_until_min, night_off_until_h,
+            night_off_until_d.
+        holidays
+            Holidays of that calendar, `"2024-12-25"`.
+        utc_offset_s
+            Local clock of that calendar ahead of the `start` of the run (UTC), s; no daylight saving time.
+            Default: 3600.0. Also utc_offset_min, utc_offset_h, utc_offset_d.
         start_time_s
             Time of day at which the run starts, s after midnight. Default: 0.0. Also start_time_min,
             start_time_h, start_time_d.

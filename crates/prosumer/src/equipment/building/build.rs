@@ -7,6 +7,7 @@ use crate::building::comfort::{Comfort, DAY_S};
 use crate::building::emitter::{Emitter, logarithmic_mean_k};
 use crate::building::envelope::{Areas, Shape, UValues, insulated_w_m2_k};
 use crate::building::house::{AIR_J_M3_K, House};
+use crate::calendar::{DaysOff, day_of_date};
 use crate::equipment::liquid;
 use crate::thermal_unit::UnitError;
 use anergy_core::medium::Medium;
@@ -70,6 +71,8 @@ impl BuildingParams {
         for (field, value) in [
             ("night_from_s", self.night_from_s),
             ("night_until_s", self.night_until_s),
+            ("night_off_from_s", self.night_off_from_s.unwrap_or(self.night_from_s)),
+            ("night_off_until_s", self.night_off_until_s.unwrap_or(self.night_until_s)),
             ("start_time_s", self.start_time_s),
         ] {
             within(field, value, (0.0, DAY_S), "must lie between 0 and 24 h")?;
@@ -90,6 +93,7 @@ impl BuildingParams {
         ] {
             within(field, value, AIR_K, "is no temperature of air or ground (-60 to 60 degC)")?;
         }
+        within("utc_offset_s", self.utc_offset_s, (-DAY_S, DAY_S), "must lie within a day")?;
         within("azimuth_rad", self.azimuth_rad, (f64::MIN, f64::MAX), "must be finite")?;
         within(
             "air_change_present_1_s",
@@ -214,18 +218,38 @@ impl BuildingParams {
             value: house.u.wall_w_m2_k,
             requirement: "is above the films of air alone (5.5 W/(m2 K) or so)",
         })?;
+        let night_off_s = (
+            self.night_off_from_s.unwrap_or(self.night_from_s),
+            self.night_off_until_s.unwrap_or(self.night_until_s),
+        );
+        let holiday = |date: &String| {
+            day_of_date(date).ok_or_else(|| UnitError::Fields {
+                problem: format!(
+                    "holidays: \"{date}\" is no date, write for example \"2024-12-25\""
+                ),
+            })
+        };
+        let by_calendar = self.night_off_from_s.or(self.night_off_until_s).is_some();
+        if !by_calendar && !self.holidays.is_empty() {
+            let problem =
+                "holidays act on night_off_from_s and night_off_until_s: give one of them".into();
+            return Err(UnitError::Fields { problem });
+        }
+        let holidays = self.holidays.iter().map(holiday).collect::<Result<_, _>>()?;
+        let days_off = by_calendar.then_some(DaysOff { utc_offset_s: self.utc_offset_s, holidays });
         let more_1_s = self.air_change_present_1_s - self.air_change_absent_1_s;
         Ok(Building {
             model: Box::new(model),
             emitter,
             comfort: Comfort {
                 night_k: self.night_set_k,
-                night_s: (self.night_from_s, self.night_until_s),
+                nights_s: [(self.night_from_s, self.night_until_s), night_off_s],
                 absent_k: self.absent_set_k,
                 band_k: self.thermostat_difference_k,
                 reset_s: self.thermostat_reset_s,
                 heating_limit_k: self.heating_limit_k,
             },
+            days_off,
             sun: Sun::new(&house.areas, self.azimuth_rad, self.window_g * self.window_shading),
             more_exchange_w_k: more_1_s * house.areas.living_m3 * AIR_J_M3_K,
             people_w: self.inhabitants * self.person_w,

@@ -116,6 +116,18 @@ pub struct BuildingParams {
     pub night_from_s: f64,
     /// When the night ends, s after midnight.
     pub night_until_s: f64,
+    /// When the night of Saturdays, Sundays and holidays begins, s after midnight. With it or `night_off_until_s` the days and
+    /// the time of day are those of the calendar: `start` of the run and `utc_offset_s`; a night is that of the day it is in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub night_off_from_s: Option<f64>,
+    /// When the night of these days ends, s after midnight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub night_off_until_s: Option<f64>,
+    /// Holidays of that calendar, `"2024-12-25"`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub holidays: Vec<String>,
+    /// Local clock of that calendar ahead of the `start` of the run (UTC), s; no daylight saving time.
+    pub utc_offset_s: f64,
     /// Time of day at which the run starts, s after midnight.
     pub start_time_s: f64,
     /// Set point while nobody is there, K; without it the set point does not follow the presence.
@@ -182,6 +194,10 @@ impl Default for BuildingParams {
             night_set_k: None,
             night_from_s: 82_800.0,
             night_until_s: 21_600.0,
+            night_off_from_s: None,
+            night_off_until_s: None,
+            holidays: Vec::new(),
+            utc_offset_s: 3600.0,
             start_time_s: 0.0,
             absent_set_k: None,
             heating_limit_k: 287.15,

@@ -337,3 +337,47 @@ fn what_cannot_be_names_its_field() {
     let nothing = BuildingParams { heating: false, ..good };
     assert!(nothing.build(&Medium::default()).is_err());
 }
+
+#[test]
+fn nights_follow_the_calendar() {
+    // Friday 2024-02-02, 19:00 UTC is 20:00 of the local clock. Night from 23 to 6, on days off from 0:30 to 8 h; the Monday
+    // after is a holiday.
+    let params = BuildingParams {
+        night_set_k: Some(291.15),
+        night_off_from_s: Some(1800.0),
+        night_off_until_s: Some(8.0 * HOUR_S),
+        holidays: vec!["2024-02-05".into()],
+        ..radiators()
+    };
+    let mut run = Run::new(&params);
+    run.set("start_unix_s", 19_755.0 * 24.0 * HOUR_S + 19.0 * HOUR_S);
+    // Hours after Friday 20:00 and whether it is night.
+    let expected = [
+        (2, false),  // Fri 22
+        (3, true),   // Fri 23
+        (4, false),  // Sat 0
+        (5, true),   // Sat 1
+        (11, true),  // Sat 7
+        (12, false), // Sat 8
+        (27, false), // Sat 23
+        (59, true),  // Mon 7, a holiday
+        (60, false), // Mon 8
+        (75, false), // Mon 23
+        (76, true),  // Tue 0
+        (81, true),  // Tue 5
+        (82, false), // Tue 6
+    ];
+    let mut night = Vec::new();
+    for _ in 0..=82 {
+        run.step(HOUR_S, &[330.0]);
+        night.push(run.out("set_k") < 293.0);
+    }
+    for (hour, is_night) in expected {
+        assert_eq!(night[hour], is_night, "{hour} h after Friday 20:00");
+    }
+    for holidays in [vec!["25.12.2024".to_owned()], vec!["2023-02-29".to_owned()]] {
+        assert!(BuildingParams { holidays, ..params.clone() }.build(&Medium::default()).is_err());
+    }
+    let alone = BuildingParams { night_off_from_s: None, night_off_until_s: None, ..params };
+    assert!(alone.build(&Medium::default()).is_err());
+}
