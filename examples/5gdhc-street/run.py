@@ -67,7 +67,9 @@ started = time.process_time()
 result = model.simulate()
 used_s = time.process_time() - started
 kpis = result.kpis()
-state_bytes = len(model.simulation().snapshot().to_bytes())
+simulation = model.simulation()
+simulation.advance(6 * 3600.0)
+state_bytes = len(simulation.snapshot().to_bytes())
 print(f"{houses} houses, {until} in steps of a minute: {used_s:.1f} s of one core, {state_bytes / houses:.0f} bytes of state per house")
 starts = [kpis[f"h{i}.heat_pump.starts"] for i in range(houses) if i % 4 != 3]
 cops = [kpis[f"h{i}.heat_pump.seasonal_cop"] for i in range(houses) if i % 4 != 3]
