@@ -104,6 +104,23 @@ fn a_small_net() {
 }
 
 #[test]
+fn the_temperature_of_ice_is_that_of_the_coldest_water() {
+    // 273.15 K is what nets for hydraulics alone are often given.
+    let mut net = net();
+    for row in 0..5 {
+        let cold = net.to_string().replacen("290.0", "273.15", 1);
+        net = serde_json::from_str(&cold).unwrap_or_else(|_| panic!("{row}"));
+    }
+    let import = of(&net);
+    assert!(import.model.contains("initial_k = 273.65"), "{}", import.model);
+    assert!(
+        import.notes.iter().any(|note| note.to_string().contains("273.15 K")),
+        "{:?}",
+        import.notes
+    );
+}
+
+#[test]
 fn wrong_nets() {
     let error = |net: &Value| {
         import(net.to_string().as_bytes(), Friction::SwameeJain).unwrap_err()[0].message.clone()

@@ -20,6 +20,11 @@ const LEAST_LOSS: f64 = 0.01;
 /// The largest flow of a consumer, m3/s: none.
 const ANY_FLOW_M3_S: f64 = 1e3;
 
+/// The nearest temperature at which water is a liquid that anergy describes.
+fn liquid(t_k: f64) -> f64 {
+    t_k.clamp(0.5 + 273.15, 99.0 + 273.15)
+}
+
 pub(super) fn translate(
     net: &Tables,
     friction: Friction,
@@ -30,13 +35,19 @@ pub(super) fn translate(
         junctions.in_service().filter_map(|row| junctions.maybe(row, "tfluid_k")).collect();
     let initial_k = temperatures.iter().sum::<f64>() / temperatures.len().max(1) as f64;
     let water = water(net, initial_k)?;
+    if let Some(t_k) = temperatures.iter().find(|t_k| liquid(**t_k) != **t_k) {
+        let what = format!(
+            "temperatures of junctions such as {t_k} K are not of liquid water: within 0.5 to 99 degC here"
+        );
+        text.note(NoteKind::Changed, None, what);
+    }
     let what = format!("the friction law is {}, for which the file has no word", friction.word());
     text.note(NoteKind::Changed, None, what);
     let name = net.get("name");
     let name = name.as_deref().and_then(|name| name.as_str()).unwrap_or_default();
     let title = if name.is_empty() { "pandapipes net" } else { name };
     text.section("model").text("name", title).number("gravity", 9.81);
-    text.section("run").number("initial_k", initial_k);
+    text.section("run").number("initial_k", liquid(initial_k));
     text.section("fluid")
         .number("density_kg_m3", water.density)
         .number("heat_capacity_j_kg_k", water.heat_capacity)
@@ -72,7 +83,7 @@ pub(super) fn translate(
     for row in junctions.rows.iter().filter(|row| reached.contains(&row.index)) {
         let height = junctions.maybe(row, "height_m").unwrap_or(0.0);
         writer.elevation.insert(row.index, height);
-        let start_k = junctions.maybe(row, "tfluid_k");
+        let start_k = junctions.maybe(row, "tfluid_k").map(liquid);
         let entry = writer.text.node(&node(row.index)).number("elevation_m", height);
         let flow = m_flow.get(&row.index).filter(|flow| **flow != 0.0);
         let entry = match (fixed.get(&row.index), flow) {
