@@ -1,7 +1,7 @@
 //! A step back, and pairs of effects that hide each other.
 
 use super::wins::{SURE, WINS, WITHIN};
-use super::{BEYOND, EXPLAINED, First, KEEPS, PAIRS, Search, Settled, excess};
+use super::{BEYOND, EXPLAINED, First, KEEPS, PAIRS, Search, Settled, WARM, excess};
 use crate::catalogue::tolerances;
 use crate::error::ExplainError;
 use crate::explain::Verdict;
@@ -95,8 +95,10 @@ impl Search<'_> {
             })
             .transpose()?;
         let rival = single.as_ref().unwrap_or(&null);
-        // What one effect leaves within what the sensors promise needs no second one that is not very sure.
-        let least = if self.z(&rival.readings) < WITHIN { SURE } else { WINS };
+        // What one effect leaves within what the sensors promise needs no second one that is not very sure; and of all that could be
+        // the second one, one fits best by chance.
+        let chance = WARM * (self.all.len() as f64).ln();
+        let least = if self.z(&rival.readings) < WITHIN { SURE } else { WINS.max(chance) };
         let (Some(pair), [one, other, ..]) = (tried.first(), &findings[..]) else { return Ok(()) };
         let gain = pair.fit.log_evidence - rival.log_evidence;
         let explained = 1.0 - excess(one.validation_z) / excess(self.z(&null.readings)).max(1e-9);
