@@ -2,6 +2,7 @@
 
 mod conclude;
 mod rank;
+mod settled;
 mod steps;
 mod wins;
 
@@ -17,6 +18,7 @@ use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::unknown::Unknown;
 use nalgebra::DVector;
+pub(crate) use settled::Settled;
 use wins::{STRAINS, WINS, adds, together};
 
 /// The likelihood is taken to the power of one over this ...
@@ -61,53 +63,6 @@ const MOST_COMPARED: usize = 6;
 const PAIRS: (usize, usize) = (3, 8);
 /// An unknown that can move no more than this in all samples together, standard deviations, is left out.
 const MOVES: f64 = 0.1;
-
-/// What the search settled on.
-pub(crate) struct Settled {
-    pub(crate) verdict: Verdict,
-    pub(crate) because: String,
-    /// Places among the candidates.
-    pub(crate) taken: Vec<usize>,
-    pub(crate) effects: Vec<Finding>,
-    pub(crate) class: Vec<Finding>,
-    pub(crate) tried: Vec<Finding>,
-    /// Readings with the tolerances fitted, without an effect.
-    pub(crate) null_readings: Vec<f64>,
-    /// What would tell the members of the class apart, the most telling first.
-    pub(crate) additions: Vec<Addition>,
-    /// The unknowns without an effect, and their values.
-    pub(crate) null: (Vec<Unknown>, Vec<f64>),
-    /// The unknowns of the last fit, and their values.
-    pub(crate) chosen: Option<(Vec<Unknown>, Vec<f64>)>,
-}
-
-impl Settled {
-    /// Before anything was tried.
-    fn nothing() -> Self {
-        Self {
-            verdict: Verdict::Nothing,
-            because: String::new(),
-            taken: Vec::new(),
-            effects: Vec::new(),
-            class: Vec::new(),
-            tried: Vec::new(),
-            null_readings: Vec::new(),
-            additions: Vec::new(),
-            null: (Vec::new(), Vec::new()),
-            chosen: None,
-        }
-    }
-
-    /// Every unknown of the last fit, without an effect of that of the tolerances: its name, value, and distance from the middle of its range in standard deviations.
-    pub(crate) fn strained(&self) -> Vec<(String, f64, f64)> {
-        let of =
-            |(u, at): (&Unknown, &f64)| (u.target.to_string(), u.value(*at), (at - u.mean) / u.sd);
-        let (unknowns, at) = self.chosen.as_ref().unwrap_or(&self.null);
-        let mut all: Vec<_> = unknowns.iter().zip(at).map(of).collect();
-        all.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
-        all
-    }
-}
 
 /// The first round, and from where it started.
 struct First {
@@ -218,38 +173,6 @@ impl<'a> Search<'a> {
         self.doubt(&mut settled)?;
         settled.taken.clone_from(&self.taken);
         Ok(settled)
-    }
-
-    /// Effects that leave far too much are not the cause; nor do two sensors begin to drift at once where one cause of the plant may,
-    /// or three effects show for the first time together.
-    fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
-        let Some((unknowns, at)) = &settled.chosen else { return Ok(()) };
-        let z = self.z(&self.experiment.readings(unknowns, at)?);
-        let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
-        if z > TOO_MUCH || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
-            let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
-            let names: Vec<String> = names.collect();
-            let best = format!("the best that was found, {}", names.join(" and "));
-            settled.because = if drifts > 1 {
-                format!(
-                    "{best}, would be {drifts} drifts or jumps of sensors: rather one cause of the plant that is not in the catalogue"
-                )
-            } else if z > TOO_MUCH {
-                format!("{best}, leaves residuals of {z:.1} standard deviations")
-            } else {
-                format!(
-                    "{best}, would be {} effects at once: rather one cause that is not in the catalogue",
-                    settled.effects.len()
-                )
-            };
-            settled.verdict = Verdict::Unexplained;
-            settled.effects.clear();
-            settled.class.clear();
-            settled.additions.clear();
-            settled.chosen = None;
-            self.taken.clear();
-        }
-        Ok(())
     }
 
     fn first(&self, round: Round) -> Option<First> {

@@ -1,10 +1,11 @@
-//! The verdict of the first round.
+//! The verdict of the first round, and what the last one may make of it.
 
 use super::wins::{EVEN, foretells, surely_foretells, together, wins};
 use super::{
-    BEYOND, DIFFERS, EXPLAINED, LEAVES, PARALLEL, Round, Search, Settled, TAKES, UNEXPLAINED,
-    excess, prior,
+    BEYOND, DIFFERS, EXPLAINED, LEAVES, MOST_TOGETHER, PARALLEL, Round, Search, Settled, TAKES,
+    TOO_MUCH, UNEXPLAINED, excess, prior,
 };
+use crate::error::ExplainError;
 use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;
 
@@ -25,6 +26,38 @@ impl Search<'_> {
         settled.class = self.likely(round, worst);
         (settled.verdict, settled.because) =
             verdict(&round.findings, settled.class.len(), round.null_z, worst);
+    }
+
+    /// Effects that leave far too much are not the cause; nor do two sensors begin to drift at once where one cause of the plant may,
+    /// or three effects show for the first time together.
+    pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
+        let Some((unknowns, at)) = &settled.chosen else { return Ok(()) };
+        let z = self.z(&self.experiment.readings(unknowns, at)?);
+        let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
+        if z > TOO_MUCH || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
+            let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
+            let names: Vec<String> = names.collect();
+            let best = format!("the best that was found, {}", names.join(" and "));
+            settled.because = if drifts > 1 {
+                format!(
+                    "{best}, would be {drifts} drifts or jumps of sensors: rather one cause of the plant that is not in the catalogue"
+                )
+            } else if z > TOO_MUCH {
+                format!("{best}, leaves residuals of {z:.1} standard deviations")
+            } else {
+                format!(
+                    "{best}, would be {} effects at once: rather one cause that is not in the catalogue",
+                    settled.effects.len()
+                )
+            };
+            settled.verdict = Verdict::Unexplained;
+            settled.effects.clear();
+            settled.class.clear();
+            settled.additions.clear();
+            settled.chosen = None;
+            self.taken.clear();
+        }
+        Ok(())
     }
 }
 
