@@ -8,13 +8,8 @@ use anergy_simulation::balance::{Balances, summary};
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::simulation;
 use anergy_tests::workspace;
-
-fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, &workspace())
-        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(build(&model).unwrap()).unwrap()
-}
 
 fn advance(simulation: &mut Simulation, until_s: f64, step_s: f64) {
     simulation.advance_to(Time::from_s(until_s).unwrap(), Time::from_s(step_s).unwrap()).unwrap();

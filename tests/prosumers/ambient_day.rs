@@ -2,7 +2,6 @@
 //! (`examples/5gdhc-day`). The first day of the run warms floors and walls; the second one is judged.
 #![allow(clippy::unwrap_used)]
 
-use crate::running::get;
 use anergy_core::clock::Time;
 use anergy_core::error::RecordError;
 use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
@@ -12,6 +11,7 @@ use anergy_simulation::model::Model;
 use anergy_simulation::model_file::{Duration, StepEntry};
 use anergy_simulation::run::{RunOptions, run};
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::get;
 use anergy_tests::workspace;
 
 const DAY_S: f64 = 86_400.0;

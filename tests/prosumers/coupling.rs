@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::running::get;
 use allocation_counter::measure;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
@@ -10,6 +9,7 @@ use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::overlay::Change;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::get;
 use serde_json::json;
 use std::path::Path;
 

@@ -1,12 +1,12 @@
 //! Heat pumps in a model: `examples/heat-pumps` in steps of any length, with its balances, from a snapshot.
 #![allow(clippy::unwrap_used)]
 
-use crate::running::get;
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::get;
 use anergy_tests::workspace;
 
 fn simulation() -> Simulation {

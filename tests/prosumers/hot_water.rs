@@ -3,12 +3,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use crate::running::get;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::get;
 use std::path::Path;
 
 const AROUND: &str = r#"format = 1

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::running::{advance, get, simulation};
 use allocation_counter::measure;
 use anergy_core::clock::Time;
 use anergy_core::error::RecordError;
@@ -10,6 +9,7 @@ use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
 use anergy_simulation::balance::{Balances, summary};
 use anergy_simulation::run::{RunOptions, run};
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::{advance, get, simulation};
 
 /// Water that goes round beside the house, and a cold sunny day in February.
 const AROUND: &str = r#"format = 1

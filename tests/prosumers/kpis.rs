@@ -4,17 +4,10 @@
 
 use anergy_core::clock::Time;
 use anergy_simulation::balance::{Balances, summary};
-use anergy_simulation::build::build;
-use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::simulation;
 use anergy_tests::workspace;
 use serde_json::Value;
-
-fn simulation(text: &str) -> Simulation {
-    let model = Model::from_toml(text, &workspace())
-        .unwrap_or_else(|problems| panic!("{}", problems.render(text)));
-    Simulation::new(build(&model).unwrap()).unwrap()
-}
 
 fn advance(simulation: &mut Simulation, until_s: f64, step_s: f64) {
     let [until, step] = [until_s, step_s].map(|s| Time::from_s(s).unwrap());

@@ -3,11 +3,11 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::running::{advance, get, simulation};
 use anergy_core::recorder::Event;
 use anergy_simulation::balance::{Balances, summary};
 use anergy_simulation::simulation::Simulation;
 use anergy_tests::pages::write_table;
+use anergy_tests::running::{advance, get, simulation};
 use std::fmt::Write;
 
 const HOUSES: [&str; 5] = ["sf1", "sf2", "sf3", "sf4", "mf5"];

@@ -14,7 +14,6 @@ mod kpis;
 mod laboratory_houses;
 mod prosumer_station;
 mod rules;
-mod running;
 mod storage;
 mod storage_charging;
 mod three_levels;

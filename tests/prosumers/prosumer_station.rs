@@ -2,11 +2,11 @@
 //! interface, snapshots.
 #![allow(clippy::unwrap_used)]
 
-use crate::running::{get, simulation};
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::{get, simulation};
 use std::path::Path;
 
 /// A balancing unit and a house that feeds in 5 l/min at 60 degC, extracts 5 l/min from 600 s to 1200 s, then feeds in.

@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::running::{self, get};
 use anergy_control::controller::{Controller, Inputs};
 use anergy_control::controllers::rule::RuleParams;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::model_file::house_library;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::{self, get};
 
 /// Values around all thresholds, degC.
 const DEGC: [f64; 18] = [

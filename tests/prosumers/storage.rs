@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::running::{advance, get, simulation};
 use allocation_counter::measure;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::{advance, get, simulation};
 
 /// A boiler charges a storage from which a load is served; the network beside it only circulates.
 fn house(scheme: &str) -> String {

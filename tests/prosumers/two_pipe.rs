@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::running::get;
 use anergy_core::clock::Time;
 use anergy_simulation::balance::Balances;
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::overlay::Change;
 use anergy_simulation::simulation::Simulation;
+use anergy_tests::running::get;
 use anergy_tests::workspace;
 use serde_json::json;
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! Weather in models: what the signals `weather.*` are in a run, who follows them, and who takes them over.
 #![allow(clippy::unwrap_used)]
 
-use crate::running::get;
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::simulation::Simulation;
 use anergy_simulation::steady;
+use anergy_tests::running::get;
 use anergy_tests::workspace;
 use std::path::Path;
 

@@ -3,6 +3,7 @@
 
 pub mod pages;
 pub mod prosnet;
+pub mod running;
 pub mod samples;
 
 use std::path::{Path, PathBuf};
