@@ -2,8 +2,8 @@
 //!
 //! - `thermal destest FOLDER [DAYS]`: the DESTEST network (definition in FOLDER), 256 days at 1 min.
 //! - `thermal year CONSUMERS [DAYS]`: a generated grid at 15 min, loads from profiles, 365 days.
-//! - `thermal valves CONSUMERS [DAYS]`: the same with a thermostatic valve at every consumer, in steps of 15 min and in automatic
-//!   ones, and how far both are from steps of 1 min.
+//! - `thermal valves CONSUMERS [DAYS]`: the same with a thermostatic valve at every consumer, in steps of 15 min and (a week) in
+//!   automatic ones; two days of winter and of summer in other steps against those of 5 s.
 //! - `thermal steps CONSUMERS...`: time per step of such grids, 96 steps after a day.
 //! - `thermal model CONSUMERS FILE [valves]`: the model file of such a grid, its profiles beside it.
 //!
@@ -15,7 +15,7 @@ use anergy_benches::{destest, two_pipe_network_of_a_year, write_profiles};
 use anergy_core::clock::{NS_PER_S, Time};
 use anergy_core::error::RecordError;
 use anergy_core::recorder::{Channel, Event, Recorder, RunHeader};
-use anergy_simulation::automatic_step::Step;
+use anergy_simulation::automatic_step::{AutomaticStep, Step};
 use anergy_simulation::build::build;
 use anergy_simulation::model::Model;
 use anergy_simulation::run::{RunOptions, run};
@@ -67,10 +67,11 @@ fn main() {
         Some("valves") => {
             let consumers = number(1, 1000.0) as usize;
             let text = two_pipe_network_with_valves(consumers, SEED, &tempfile());
-            for step in ["15min", "auto"] {
+            let days = number(2, 365.0);
+            for (step, days) in [("15min", days), ("auto", days.min(7.0))] {
                 let text = text.replace("step = \"15min\"", &format!("step = \"{step}\""));
                 let name = format!("{consumers} thermostatic valves, step {step}");
-                whole_run(&name, &text, number(2, 365.0));
+                whole_run(&name, &text, days);
             }
             deviations(&text);
         }
@@ -133,38 +134,56 @@ fn whole_run(name: &str, text: &str, days: f64) {
     println!("{}", report.summary["balances"]);
 }
 
-/// Plant and a consumer over two days of winter: flow, return and heat in other steps against those of 1 min.
+/// Plant and a consumer over two days of winter and of summer: flow, return and heat, at full hours, in other steps against those
+/// of 5 s.
 fn deviations(text: &str) {
-    let hours = |step: Option<Time>| -> (Vec<[f64; 3]>, f64) {
-        let mut simulation = simulation(text);
-        let channels =
-            ["plant.station.m_flow_kg_s", "plant.generator_inlet.t_k", "c1.unit.q_flow_w"]
-                .map(|name| simulation.channel(name).unwrap());
-        let automatic = simulation.plan().automatic_step();
-        let step = step.map_or(Step::Automatic(automatic), Step::Fixed);
-        let start = Instant::now();
+    let mut simulation = simulation(text);
+    println!(
+        "| step, 48 h | time, s | flow of the plant, rms | its return, rms K | heat of a house, rms |"
+    );
+    println!("|---|---|---|---|---|");
+    for (season, first_day) in [("winter", 0), ("summer", 182)] {
+        simulation.advance_to(Time(first_day * 24 * HOUR.0), QUARTER).unwrap();
+        deviations_from_here(season, &mut simulation);
+    }
+}
+
+fn deviations_from_here(season: &str, simulation: &mut Simulation) {
+    let start = simulation.snapshot();
+    let channels = ["plant.station.m_flow_kg_s", "plant.generator_inlet.t_k", "c1.unit.q_flow_w"]
+        .map(|name| simulation.channel(name).unwrap());
+    let automatic = simulation.plan().automatic_step();
+    let coarse = AutomaticStep { tolerance_flow: 5.0 * automatic.tolerance_flow, ..automatic };
+    let mut hours = |step: Step| -> (Vec<[f64; 3]>, f64) {
+        simulation.restore(&start).unwrap();
+        let (began, clock) = (simulation.time(), Instant::now());
         let mut rows = Vec::new();
         for hour in 1..=48 {
-            simulation.advance_to(Time(hour * HOUR.0), step).unwrap();
+            simulation.advance_to(began + Time(hour * HOUR.0), step).unwrap();
             rows.push(channels.map(|channel| simulation.get(channel)));
         }
-        (rows, start.elapsed().as_secs_f64())
+        (rows, clock.elapsed().as_secs_f64())
     };
-    let (exact, exact_s) = hours(Some(Time(60 * NS_PER_S)));
-    println!(
-        "| step, 48 h of winter | time, s | flow of the plant, rms | its return, rms K | heat of a house, rms |"
-    );
-    println!("|---|---|---|---|---|\n| 1 min | {exact_s:.2} | - | - | - |");
-    for (name, step) in [("15 min", Some(QUARTER)), ("automatic", None)] {
+    let (exact, exact_s) = hours(Step::Fixed(Time(5 * NS_PER_S)));
+    println!("| {season}, 5 s | {exact_s:.2} | - | - | - |");
+    let seconds = |s: i64| Step::Fixed(Time(s * NS_PER_S));
+    let kinds = [
+        ("30 s", seconds(30)),
+        ("1 min", seconds(60)),
+        ("15 min", Step::Fixed(QUARTER)),
+        ("automatic", Step::Automatic(automatic)),
+        ("automatic, 5 times the tolerance of flows", Step::Automatic(coarse)),
+    ];
+    for (name, step) in kinds {
         let (rows, spent_s) = hours(step);
-        // The first hours are the filling of the pipes.
+        // In winter the first hours are the filling of the pipes.
         let rms = |of: usize| {
             let squares = rows.iter().zip(&exact).skip(6).map(|(a, b)| (a[of] - b[of]).powi(2));
             (squares.sum::<f64>() / (rows.len() - 6) as f64).sqrt()
         };
         let mean = |of: usize| exact.iter().skip(6).map(|row| row[of]).sum::<f64>() / 42.0;
         println!(
-            "| {name} | {spent_s:.2} | {:.2} % | {:.2} | {:.2} % |",
+            "| {season}, {name} | {spent_s:.2} | {:.2} % | {:.3} | {:.2} % |",
             100.0 * rms(0) / mean(0).abs(),
             rms(1),
             100.0 * rms(2) / mean(2).abs()
