@@ -1,6 +1,6 @@
 """`anergy import pandapipes` against pandapipes: the water nets that it brings and some built here.
 
-pandapipes solves each net (Colebrook); anergy imports the file that pandapipes.to_json wrote and solves it.
+pandapipes solves each net (Colebrook, then its heat); anergy imports the file that pandapipes.to_json wrote and solves it.
 Writes a table of the differences; ends with 1 when fewer than 15 nets agree or one fails without saying so.
 
     .venv-peers/bin/python tests/peers/pandapipes_import.py --anergy target/release/anergy
@@ -25,6 +25,8 @@ import pandapipes.networks as networks
 
 # Pressures agree to this share of their span, flows to this share of the largest.
 AGREES = 1e-2
+# Temperatures of junctions that are passed by water, K.
+AGREES_K = 0.1
 WANTED = 15
 
 
@@ -84,6 +86,24 @@ def run(program: str, *arguments: str) -> str | None:
     return (done.stderr.strip() or "(silent)") if done.returncode else None
 
 
+def temperatures(net: pp.pandapipesNet) -> dict[str, float]:
+    """Those of pandapipes at junctions that are passed by water; none where its heat does not converge."""
+    try:
+        pp.pipeflow(net, friction_model="colebrook", mode="sequential", max_iter_hyd=200, max_iter_therm=100)
+    except Exception:
+        return {}
+    passed = net.pipe[net.res_pipe.mdot_from_kg_per_s.abs() > 1e-3]
+    junctions = set(passed.from_junction) | set(passed.to_junction)
+    found = {f"junction{i}": t_k for i, t_k in net.res_junction.t_k.items() if i in junctions}
+    # Where all water has one temperature there is nothing to compare.
+    return found if found and max(found.values()) - min(found.values()) > 0.1 else {}
+
+
+def hydraulics(net: pp.pandapipesNet) -> None:
+    options = {"friction_model": "colebrook", "mode": "hydraulics", "max_iter_hyd": 200, "tol_p": 1e-9}
+    pp.pipeflow(net, tol_m=1e-9, tol_res=1e-6, max_iter_colebrook=200, tolerance_colebrook=1e-10, **options)
+
+
 def compare(name: str, build, program: str, folder: str) -> dict:
     row = {"name": name}
     try:
@@ -95,8 +115,8 @@ def compare(name: str, build, program: str, folder: str) -> dict:
     file, model, result = (str(Path(folder, part)) for part in ("net.json", "model.toml", "steady.json"))
     pp.to_json(net, file)
     try:
-        options = {"friction_model": "colebrook", "mode": "hydraulics", "max_iter_hyd": 200, "tol_p": 1e-9}
-        pp.pipeflow(net, tol_m=1e-9, tol_res=1e-6, max_iter_colebrook=200, tolerance_colebrook=1e-10, **options)
+        warm = temperatures(net)
+        hydraulics(net)
     except Exception as error:
         return row | {"status": f"pandapipes does not solve it: {' '.join(str(error).split())}"}
     row.update(nodes=len(net.junction), branches=len(net.pipe))
@@ -119,6 +139,11 @@ def compare(name: str, build, program: str, folder: str) -> dict:
     largest = max(map(abs, mass.values()), default=0) or 1e-6
     row["flow"] = max(abs(flows.get(i, math.inf) - m) for i, m in mass.items()) / largest
     row["density"] = density
+    if warm:
+        t_k = {node["id"]: node["t_k"] for node in steady["nodes"]}
+        row["temperature"] = max(abs(t_k[i] - t) for i, t in warm.items())
+        if row["temperature"] > AGREES_K:
+            row["why"] = "hotter than 99 degC" if row["problems"] else "water of a source"
     agrees = row["pressure"] <= AGREES and row["flow"] <= AGREES
     row["status"] = "agrees" if agrees else "differs"
     # Its Colebrook law goes on below Re = 4000, where flow is laminar or about to be.
@@ -126,11 +151,15 @@ def compare(name: str, build, program: str, folder: str) -> dict:
     if not agrees and slowest < 4000:
         row["status"] += f": pandapipes applies Colebrook's law at Re = {slowest:.0f}"
     row["silent"] = row["status"] == "differs" and not row["problems"]
+    if "why" in row and (row["problems"] or len(net.get("source", []))):
+        row["status"] += f"; heat differs: {row['why']}"
+    elif "why" in row:
+        row["status"], row["silent"] = "differs in its temperatures", True
     return row
 
 
 def table(rows: list[dict]) -> str:
-    agreeing = sum(row["status"] == "agrees" for row in rows)
+    agreeing = sum(row["status"].startswith("agrees") for row in rows)
     version = importlib.metadata.version("pandapipes")
     out = [
         "# pandapipes nets, imported and solved",
@@ -138,16 +167,20 @@ def table(rows: list[dict]) -> str:
         f"Water nets of pandapipes {version}, written with `to_json`, read with `anergy import pandapipes` and"
         ' solved with `anergy solve`, against `pipeflow(friction_model="colebrook", mode="hydraulics")`.'
         " Pressures: largest difference over their span; flows: over the largest flow of a pipe. The ground has"
-        " 5 degC at least (`schutterwald_heat`: -12 degC, at which the water of its standing pipes would freeze).",
+        " 5 degC at least (`schutterwald_heat`: -12 degC, at which the water of its standing pipes would freeze)."
+        f" Temperatures: the largest difference at junctions that water passes, against `mode=\"sequential\"`, {AGREES_K:g} K asked. Two"
+        " kinds of nets differ there with a reason: the water of a `source` comes at the start temperature here and at the"
+        " temperature of its junction, whatever that is, in pandapipes; water above 99 degC is refused and said so.",
         "",
         f"{datetime.date.today()}, `make peers`: {agreeing} of {len(rows)} agree to {AGREES:g}.",
         "",
-        "| net | junctions | pipes | pressures | flows | not translated | of these wrong | result |",
-        "|---|--:|--:|--:|--:|--:|--:|---|",
+        "| net | junctions | pipes | pressures | flows | temperatures, K | not translated | of these wrong | result |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|---|",
     ]
     for row in rows:
         cells = [row["name"], *(str(row.get(key, "")) for key in ("nodes", "branches"))]
         cells += [f"{row[key]:.1e}" if key in row else "" for key in ("pressure", "flow")]
+        cells.append(f"{row['temperature']:.3f}" if "temperature" in row else "")
         cells += [str(row.get(key, "")) for key in ("untranslated", "problems")]
         out.append("| " + " | ".join([*cells, row["status"].replace("|", "/")]) + " |")
     return "\n".join(out) + "\n"
@@ -167,7 +200,7 @@ def main() -> int:
             print(f"{name}: {differences} {row['status']}", flush=True)
     if options.out:
         Path(options.out).write_text(table(rows))
-    agreeing = sum(row["status"] == "agrees" for row in rows)
+    agreeing = sum(row["status"].startswith("agrees") for row in rows)
     silent = [row["name"] for row in rows if row.get("silent")]
     print(f"{agreeing} of {len(rows)} agree to {AGREES:g}; silent failures: {silent or 'none'}")
     return 0 if agreeing >= WANTED and not silent else 1
