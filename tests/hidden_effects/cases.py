@@ -162,6 +162,20 @@ class Draw:
         return [list(x) for x in same]
 
 
+def whole(effect, value, truth, sensors, clocks):
+    """What a fit of the parameter can find: the effect with the tolerance of its own quantity on top, as the plant or the sensor has it."""
+    _, component, parameter, zero, first, _, variant, _ = effect
+    if variant is not None:
+        key, x = next(iter(variant(value).items()))
+        slope = (variant(first)[key] - variant(zero)[key]) / (first - zero)
+        return value + (truth[key] - x) / slope if slope else value
+    sensor = next(s for s in sensors if s.column == component)
+    own = sensor.draws
+    beside = {"bias_k": own["bias"], "offset_kg_s": own["bias"], "offset_m3_s": own["bias"], "gain": value * (own["gain"] - 1),
+              "lag_s": sensor.lag_s * (own["lag"] - 1), "clock_s": clocks[sensor.clock] - clocks["logger"]}
+    return value + beside.get(parameter, 0.0)
+
+
 def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
     """Writes a case with these effects [(entry of d.effects, value)]; what the scorer has to know."""
     module, rig = d.module, d.rig
@@ -213,7 +227,7 @@ def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
             x = s.perfect(oracle[s.truth][0], d.at_s, by_sensor.get(s.column))
             show = module.is_show(rig, d.at_s) & np.isfinite(table[s.column])
             floor[s.column] = float(np.sqrt(np.mean((x[show] - table[s.column][show]) ** 2)))
-    return {"note": note, "oracle": floor}
+    return {"note": note, "oracle": floor, "whole": [float(whole(e, x, truth, sensors, clocks)) for e, x in effects]}
 
 
 def case_set(d, out, counts, tag):
