@@ -7,3 +7,4 @@ mod liege;
 mod measurements;
 mod rse;
 mod small_cases;
+mod tolerance;

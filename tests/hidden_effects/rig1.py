@@ -200,7 +200,9 @@ def effects(rig):
 def model(rig):
     lines = ["format = 1", "[model]", 'name = "bench"', "[run]", f'until = "{duration_s(rig):.0f}s"', f'step = "{20 if rig.get("long") else 5}s"',
              'record = "10s"', f"initial_degc = {rig['start']:.1f}", "[fluid]", 'kind = "water"', "follow_temperature = true",
-             "[ground]", f"temperature_degc = {rig['around']}", "[[node]]", 'id = "plant"', 'kind = "source"',
+             "[ground]", f"temperature_degc = {rig['around']}",
+             "[tolerance]", "length = 0.005", "loss = 0.05", "friction = 0.012", "surroundings_difference_k = 0.5",
+             "[[node]]", 'id = "plant"', 'kind = "source"',
              f"m_flow_kg_h = {rig['flows'][0] * 3600:.0f}", f"temperature_degc = {rig['start']:.1f}"]
     nodes = ["plant", "middle", "house"] if rig["rich"] else ["plant", "house"]
     if rig["rich"]:

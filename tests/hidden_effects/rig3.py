@@ -227,7 +227,8 @@ def unknown(rig, rng):
 
 def model(rig):
     lines = ["format = 1", "[model]", 'name = "three houses"', "[run]", f'until = "{BLOCK_S * BLOCKS:.0f}s"', 'step = "5s"', 'record = "10s"',
-             f"initial_degc = {rig['start']:.1f}", "[fluid]", 'kind = "water"', "follow_temperature = true", "[ground]", f"temperature_degc = {rig['around']}"]
+             f"initial_degc = {rig['start']:.1f}", "[fluid]", 'kind = "water"', "follow_temperature = true", "[ground]", f"temperature_degc = {rig['around']}",
+             "[tolerance]", "length = 0.005", "loss = 0.05", "friction = 0.012", "surroundings_difference_k = 0.5", "pump_head = 0.005"]
     for node in ("s1", "s2", "out"):
         lines += ["[[node]]", f'id = "{node}"', 'kind = "pressure_boundary"', "pressure_bar = 1.5", f"temperature_degc = {rig['start']:.1f}"]
     for node in ("a1", "b1", "a2", "b2", "j1", "j2", "j3"):

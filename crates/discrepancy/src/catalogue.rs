@@ -8,6 +8,7 @@ mod hydraulics;
 mod pipes;
 mod seen;
 mod sensors;
+mod tolerance;
 mod units;
 
 pub(crate) use seen::Use;

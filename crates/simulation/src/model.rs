@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostics;
 use crate::effect::EffectSpec;
 use crate::model_file::{
     GroundEntry, InterfaceEntry, Interpolation, NodeEntry, PrescribedEntry, PressureReferenceEntry,
-    RunEntry, WeatherEntry, WeatherKind, WorstPointEntry,
+    RunEntry, ToleranceEntry, WeatherEntry, WeatherKind, WorstPointEntry,
 };
 use crate::table::Tables;
 use crate::weather::Records;
@@ -257,6 +257,8 @@ pub struct Model {
     pub ground_place: Place,
     /// The weather, where there is one.
     pub weather: Option<WeatherSpec>,
+    /// How well its numbers are known.
+    pub tolerance: ToleranceEntry,
     /// Nodes.
     pub nodes: Vec<NodeSpec>,
     /// Edges.

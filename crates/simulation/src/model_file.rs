@@ -22,6 +22,7 @@ pub mod series;
 mod shared_command;
 mod station_parts;
 mod tables;
+mod tolerance;
 mod weather;
 
 pub use balancing_unit::BalancingUnitEntry;
@@ -34,6 +35,7 @@ pub use plant::{DpAt, PlantEntry, WorstPointEntry};
 pub use prosumer_station::{Directions, Extraction, FlowControl, ProsumerEntry};
 pub use shared_command::{FourWayMixerEntry, ThreeWayMode, ThreeWayValveEntry};
 pub use tables::NetworkEntry;
+pub use tolerance::ToleranceEntry;
 pub use weather::{Means, WeatherEntry, WeatherKind};
 
 use anergy_core::clock::Time;

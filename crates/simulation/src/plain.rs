@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostics;
 use crate::document::Span;
 use crate::document::to_toml;
 use crate::model::{Model, Place};
-use crate::model_file::{FluidEntry, GroundEntry, WeatherEntry};
+use crate::model_file::{FluidEntry, GroundEntry, ToleranceEntry, WeatherEntry};
 use anergy_network::elements::ElementParams;
 use serde_json::{Map, Value, json};
 
@@ -37,6 +37,9 @@ impl Model {
         file.insert("ground".into(), self.plain_ground());
         if let Some(weather) = &self.weather {
             file.insert("weather".into(), plain_weather(&weather.entry));
+        }
+        if self.tolerance != ToleranceEntry::default() {
+            file.insert("tolerance".into(), json!(self.tolerance));
         }
         let mut section = |name: &str, entries: Vec<Value>| {
             if !entries.is_empty() {

@@ -1,5 +1,6 @@
 //! Effects of pumps, valves, exchangers and leaks.
 
+use super::tolerance::Known;
 use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::sensors::Role;
@@ -9,14 +10,11 @@ use anergy_simulation::model::{EdgeSpec, Model};
 use anergy_simulation::model_file::NodeEntryKind;
 use std::collections::HashMap;
 
-/// Tolerance of the head of a pump, relative.
-const HEAD: f64 = 0.02;
-/// Tolerance of the conductance of a heat exchanger, relative.
-const CONDUCTANCE: f64 = 0.05;
 /// A command that always reads more than this keeps its valve open.
 const OPEN: f64 = 0.02;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
+    let known = Known::of(experiment);
     let mut add = |id: &'static str, component: &str, sd: f64| {
         if !has(experiment, id, component) {
             let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd);
@@ -25,18 +23,18 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     };
     if flows(experiment) {
         for edge in experiment.model.edges.iter().filter(|edge| is_pump(edge)) {
-            add("H3", &edge.id, HEAD);
+            add("H3", &edge.id, known.pump_head);
         }
     }
     if heat(experiment) {
         for component in exchangers(&experiment.model) {
-            add("X1", component, CONDUCTANCE);
+            add("X1", component, known.exchanger);
         }
     }
 }
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
-    let model = &experiment.model;
+    let (model, known) = (&experiment.model, Known::of(experiment));
     let (flows, heat) = (flows(experiment), heat(experiment));
     for edge in &model.edges {
         let id = edge.id.as_str();
@@ -45,7 +43,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             let words = "head of the pump";
             let separates = "the pressure difference over the pump";
             let head = Candidate::effect("H3", id, words, ("factor", "1"), range, separates);
-            all.push(head.tolerated(0.0, HEAD));
+            all.push(head.tolerated(0.0, known.pump_head));
         }
         if (flows || heat) && closes(experiment, edge) {
             all.push(Candidate::effect(
@@ -77,7 +75,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             let separates = "flows of both sides, or its pressure loss";
             let fouled =
                 Candidate::effect("X1", component, words, ("factor", "1"), range, separates);
-            all.push(fouled.tolerated(0.0, CONDUCTANCE));
+            all.push(fouled.tolerated(0.0, known.exchanger));
         }
     }
     of_leaks(experiment, all);

@@ -1,6 +1,7 @@
 //! Effects of pipes.
 
 use super::seen::Seen;
+use super::tolerance::Known;
 use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
@@ -10,19 +11,6 @@ use anergy_network::elements::pipe::{Laying, PipeParams};
 use anergy_simulation::model::Model;
 use std::f64::consts::PI;
 
-/// Tolerance of the length of a pipe, relative: the largest one of 1 %, over the root of 3 as that of a sensor.
-const LENGTH: f64 = 0.01 / ROOT3;
-/// Tolerance of a heat loss, relative: at most 8 %.
-const LOSS: f64 = 0.08 / ROOT3;
-/// Tolerance of the temperature around a pipe, K: at most 0.5 K.
-const SURROUNDINGS_K: f64 = 0.5 / ROOT3;
-/// Tolerance of a pressure loss, relative: at most 2 %.
-const FRICTION: f64 = 0.02 / ROOT3;
-/// Tolerance of the heat transfer between water and wall, relative: laws of turbulent flow are right to 10 %. With a wall of
-/// capacity `R C` for water of capacity `C` it disperses by `u^2 R tau/(1 + R)^3` (the time of the film `tau`); at 0.8 m/s, `R = 0.3`
-/// and 2 s a tenth of 0.2 m2/s: as much as weak dispersion (P7), in which its flaws look like one.
-const FILM: f64 = 0.1;
-const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// Heat capacity of water, J/(m3 K).
 const WATER_J_M3_K: f64 = 4.1e6;
 /// Wall of a pipe whose outer diameter is not known, m.
@@ -42,27 +30,30 @@ fn pipes(model: &Model) -> impl Iterator<Item = (&str, &PipeParams)> {
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let (seen, pressure) = (Seen::new(experiment), shows_friction(experiment));
+    let known = Known::of(experiment);
     for (component, pipe) in pipes(&experiment.model) {
         let free = |id| !has(experiment, id, component);
         let moves = |delay, loss| seen.tolerance(component, content_m3(pipe), delay, loss);
-        if free("P10") && (pressure || moves(LENGTH, LENGTH)) {
-            all.push(Unknown::plain(effect_target("P10", component, "factor"), 1.0, LENGTH));
+        if free("P10") && (pressure || moves(known.length, known.length)) {
+            all.push(Unknown::plain(effect_target("P10", component, "factor"), 1.0, known.length));
         }
-        if free("P2") && moves(0.0, LOSS) {
-            let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, LOSS);
+        if free("P2") && moves(0.0, known.loss) {
+            let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, known.loss);
             all.push(Unknown { logarithmic: true, ..factor });
         }
-        if pipe.wall == WallModel::Film && free("P1") && moves(LENGTH, 0.0) {
-            let film = Unknown::plain(effect_target("P1", component, "film_factor"), 0.0, FILM);
+        if pipe.wall == WallModel::Film && free("P1") && moves(known.length, 0.0) {
+            let film =
+                Unknown::plain(effect_target("P1", component, "film_factor"), 0.0, known.film);
             all.push(Unknown { logarithmic: true, ..film });
         }
         if pressure && free("P8") {
-            let factor = Unknown::plain(effect_target("P8", component, "factor"), 0.0, FRICTION);
+            let factor =
+                Unknown::plain(effect_target("P8", component, "factor"), 0.0, known.friction);
             all.push(Unknown { logarithmic: true, ..factor });
         }
-        if free("P3") && moves(0.0, Seen::surroundings(SURROUNDINGS_K)) {
+        if free("P3") && moves(0.0, Seen::surroundings(known.surroundings_k)) {
             let target = effect_target("P3", component, "difference_k");
-            all.push(Unknown::plain(target, 0.0, SURROUNDINGS_K));
+            all.push(Unknown::plain(target, 0.0, known.surroundings_k));
         }
     }
 }
@@ -71,10 +62,10 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let (heat, pressure) = (sensed(experiment, "k"), shows_friction(experiment));
     let longest_s = experiment.runs.iter().map(|run| run.span_s.1 - run.span_s.0);
     let longest_s = longest_s.fold(0.0, f64::max);
-    let seen = Seen::new(experiment);
+    let (seen, known) = (Seen::new(experiment), Known::of(experiment));
     for (component, pipe) in pipes(&experiment.model) {
         if heat {
-            of_heat(&seen, component, pipe, pressure, all);
+            of_heat(&seen, &known, component, pipe, pressure, all);
             if longest_s > LONG_S && lies_alone(&experiment.model, component, pipe) {
                 all.push(Candidate::effect(
                     "P4",
@@ -86,7 +77,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 ));
             }
             if pauses(experiment) && seen.effect(component, content_m3(pipe), 0.5, 0.0) {
-                of_missing_piece(component, pipe, all);
+                of_missing_piece(&known, component, pipe, all);
             }
         }
         if pressure {
@@ -98,7 +89,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 |target| Unknown::between(target, 0.5, 5.0).starting_at(1.0),
                 "pressure losses at two flow rates",
             );
-            all.push(friction.tolerated(0.0, FRICTION));
+            all.push(friction.tolerated(0.0, known.friction));
         }
     }
 }
@@ -132,7 +123,7 @@ fn content_m3(pipe: &PipeParams) -> f64 {
     0.25 * PI * pipe.inner_diameter_m.powi(2) * pipe.length_m
 }
 
-fn of_missing_piece(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
+fn of_missing_piece(known: &Known, component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>) {
     let content_m3 = content_m3(pipe);
     let piece = Candidate::effect(
         "P6",
@@ -143,11 +134,12 @@ fn of_missing_piece(component: &str, pipe: &PipeParams, all: &mut Vec<Candidate>
         "two flow rates and the pressure loss, or the volume until warm water arrives",
     );
     // Water that is not in the plan is a wrong length.
-    all.push(piece.tolerated(0.0, LENGTH * content_m3));
+    all.push(piece.tolerated(0.0, known.length * content_m3));
 }
 
 fn of_heat(
     seen: &Seen<'_>,
+    known: &Known,
     component: &str,
     pipe: &PipeParams,
     pressure: bool,
@@ -173,7 +165,7 @@ fn of_heat(
         all.push(wall.with("film_factor", film));
     }
     if moves(0.0, 5.0) {
-        of_loss(component, all);
+        of_loss(known, component, all);
     }
     if seen.rests(component) {
         all.push(Candidate::effect(
@@ -204,11 +196,11 @@ fn of_heat(
             |target| Unknown::plain(target, 1.0, 0.3 / 1.96),
             "a second flow meter, or the pressure loss",
         );
-        all.push(length.tolerated(1.0, LENGTH));
+        all.push(length.tolerated(1.0, known.length));
     }
 }
 
-fn of_loss(component: &str, all: &mut Vec<Candidate>) {
+fn of_loss(known: &Known, component: &str, all: &mut Vec<Candidate>) {
     let insulation = Candidate::effect(
         "P2",
         component,
@@ -217,7 +209,7 @@ fn of_loss(component: &str, all: &mut Vec<Candidate>) {
         |target| Unknown::between(target, 0.3, 6.0).starting_at(1.0),
         "two flow rates at two temperatures",
     );
-    all.push(insulation.tolerated(0.0, LOSS));
+    all.push(insulation.tolerated(0.0, known.loss));
     let surroundings = Candidate::effect(
         "P3",
         component,
@@ -226,5 +218,5 @@ fn of_loss(component: &str, all: &mut Vec<Candidate>) {
         |target| Unknown::plain(target, 0.0, 10.0 / 1.96),
         "a probe in the ground, or a run of cold and one of hot water",
     );
-    all.push(surroundings.tolerated(0.0, SURROUNDINGS_K));
+    all.push(surroundings.tolerated(0.0, known.surroundings_k));
 }

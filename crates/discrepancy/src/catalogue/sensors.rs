@@ -1,6 +1,7 @@
 //! Effects of sensors, and of what is known of a run at its beginning.
 
 use super::Candidate;
+use super::tolerance::Known;
 use super::units::at_outlet;
 use crate::experiment::Experiment;
 use crate::sensors::{Class, Role, Sensor};
@@ -18,11 +19,6 @@ const FIRST_K: f64 = 0.3;
 const LAG_S: f64 = 1.5;
 /// The time constant that is known is right to this share at most.
 const LAG: f64 = 0.2;
-/// Time constant of metal and water in a generator, of which models of generators know only what starts and stops show, s: 0.5 to
-/// 1 kJ/K per kW of its heat (a wall-hung boiler of 20 kW: 2 to 3 l of water, 10 to 20 kg of metal) over the heat capacity flow
-/// of 20 K at this heat, `1 kW / 20 K = 0.05 kW/K`: 10 to 20 s.
-const OUTLET_S: f64 = 15.0;
-
 /// Time constant beyond the one that is known, standard deviation, s. What follows an input at once (a pressure loss, a power)
 /// follows its noise in the model as well, which a lag would smooth: what happens between two readings has no lag.
 fn unknown_lag_s(experiment: &Experiment, i: usize) -> f64 {
@@ -32,7 +28,7 @@ fn unknown_lag_s(experiment: &Experiment, i: usize) -> f64 {
         let intervals = experiment.runs.iter().map(|run| interval_s(&run.tracks[i]));
         intervals.fold(0.0, f64::max) / 12.0_f64.sqrt()
     } else if at_outlet(experiment, sensor) {
-        OUTLET_S
+        Known::of(experiment).outlet_lag_s
     } else {
         0.0
     };

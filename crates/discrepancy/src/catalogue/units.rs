@@ -1,26 +1,17 @@
 //! Effects of houses: storages, generators, circuits that meet.
 
+use super::tolerance::Known;
 use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::sensors::Sensor;
 use crate::unknown::Unknown;
 
-/// Tolerance of the heat loss of a storage, relative.
-const LOSS: f64 = 0.08;
-/// Tolerance of an efficiency, relative.
-const EFFICIENCY: f64 = 0.02;
-/// Of the mixing along the height of a storage, whose layers are a model of it: logarithm of its factor.
-const MIXING: f64 = 0.7;
-/// Tolerance of the time that a start takes, relative.
-const START: f64 = 0.1;
-/// What the efficiency at part load may be off, relative, without an effect: two standard deviations of it.
-const PART: f64 = 0.02;
-/// What the map of a heat pump is off at 20, 40 and 60 % of the load, relative, each for itself: it has a few loads and is straight
-/// between them.
-const MAP: f64 = 0.01;
+/// What the efficiency at part load may be off without an effect over what each load of it may be.
+const PART: f64 = 2.0;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
+    let known = Known::of(experiment);
     for unit in &experiment.model.units {
         let (component, kind) = (unit.id.as_str(), unit.params.kind());
         let mut add = |id: &'static str, field: &'static str, sd: f64| {
@@ -30,16 +21,16 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
             }
         };
         if kind == "storage" && warm {
-            add("T1", "factor", LOSS);
-            add("T2", "factor", MIXING);
+            add("T1", "factor", known.storage_loss);
+            add("T2", "factor", known.storage_mixing);
         }
         if power && is_generator(kind) {
-            add("G1", "factor", EFFICIENCY);
-            add("G3", "time_factor", START);
+            add("G1", "factor", known.efficiency);
+            add("G3", "time_factor", known.start);
         }
         if power && kind == AIR_SOURCE {
             for field in ["factor_20", "factor_40", "factor_60"] {
-                add("G2", field, MAP);
+                add("G2", field, known.part_load);
             }
         }
     }
@@ -60,14 +51,15 @@ fn is_generator(kind: &str) -> bool {
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let (warm, power) = (sensed(experiment, "k"), sensed(experiment, "w"));
+    let known = Known::of(experiment);
     for unit in &experiment.model.units {
         let id = unit.id.as_str();
         let kind = unit.params.kind();
         if kind == "storage" && warm {
-            of_storage(id, all);
+            of_storage(id, &known, all);
         }
         if power && is_generator(kind) {
-            of_generator(id, all);
+            of_generator(id, &known, all);
         }
         if kind == AIR_SOURCE {
             if power {
@@ -150,13 +142,13 @@ fn factor(
     Candidate::effect(id, component, words, ("factor", "1"), range, separates)
 }
 
-fn of_storage(id: &str, all: &mut Vec<Candidate>) {
+fn of_storage(id: &str, known: &Known, all: &mut Vec<Candidate>) {
     let standby = "a day without flow, and the temperature of the room";
     let loss = factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby);
-    all.push(loss.tolerated(0.0, LOSS));
+    all.push(loss.tolerated(0.0, known.storage_loss));
     let idle = "hours without flow";
     let mixing = factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle);
-    all.push(mixing.tolerated(0.0, MIXING));
+    all.push(mixing.tolerated(0.0, known.storage_mixing));
     all.push(Candidate::effect(
         "T3",
         id,
@@ -175,10 +167,10 @@ fn of_storage(id: &str, all: &mut Vec<Candidate>) {
     ));
 }
 
-fn of_generator(id: &str, all: &mut Vec<Candidate>) {
+fn of_generator(id: &str, known: &Known, all: &mut Vec<Candidate>) {
     let both = "meters on both sides of the energy";
     let level = factor("G1", id, "efficiency of the generator", (0.8, 1.2), both);
-    all.push(level.tolerated(0.0, EFFICIENCY));
+    all.push(level.tolerated(0.0, known.efficiency));
     let part = |target| Unknown::between(target, 0.7, 1.3).starting_at(1.0);
     let load = Candidate::effect(
         "G2",
@@ -188,7 +180,7 @@ fn of_generator(id: &str, all: &mut Vec<Candidate>) {
         part,
         "several loads",
     );
-    let load = load.tolerated(0.0, PART);
+    let load = load.tolerated(0.0, PART * known.part_load);
     all.push(load.with("factor_20", part).with("factor_60", part));
     let start = Candidate::effect(
         "G3",
@@ -198,5 +190,5 @@ fn of_generator(id: &str, all: &mut Vec<Candidate>) {
         |target| Unknown::between(target, 0.3, 3.0).starting_at(1.0),
         "several starts after pauses of different length",
     );
-    all.push(start.tolerated(0.0, START));
+    all.push(start.tolerated(0.0, known.start));
 }

@@ -7110,6 +7110,62 @@ class Grid:
         sun_azimuth_rad
             Azimuth of the sun from south, west positive, rad; constant. Default: 0.0. Also sun_azimuth_deg.
         """
+    def tolerance(
+        self,
+        *,
+        length: float | None = None,
+        loss: float | None = None,
+        surroundings_difference_k: float | None = None,
+        friction: float | None = None,
+        film: float | None = None,
+        pump_head: float | None = None,
+        exchanger: float | None = None,
+        storage_loss: float | None = None,
+        storage_mixing: float | None = None,
+        efficiency: float | None = None,
+        part_load: float | None = None,
+        start: float | None = None,
+        outlet_lag_s: float | None = None,
+        outlet_lag_min: float | None = None,
+        outlet_lag_h: float | None = None,
+        outlet_lag_d: float | None = None,
+    ) -> None:
+        """Adds `[tolerance]`.
+
+        `[tolerance]`: how far the numbers of the model may lie from those of the plant without an effect, each
+        anywhere within plus or minus its tolerance. What is not given is known as well as usual
+        (`docs/src/explain.md`). A run does not depend on it.
+
+        Parameters
+        ----------
+        length
+            Length of a pipe, relative.
+        loss
+            Heat loss of a pipe, relative.
+        surroundings_difference_k
+            Temperature around a pipe, K.
+        friction
+            Pressure loss of a pipe, relative.
+        film
+            Heat transfer between the water and the wall of a pipe, relative.
+        pump_head
+            Head of a pump, relative.
+        exchanger
+            Conductance of a heat exchanger, relative.
+        storage_loss
+            Heat loss of a storage, relative.
+        storage_mixing
+            Conduction along the height of a storage, relative: 1 for anything from half to twice.
+        efficiency
+            Efficiency of a generator at all loads, relative.
+        part_load
+            Efficiency of a generator at each part load by itself, relative.
+        start
+            Length of the start of a generator, relative.
+        outlet_lag_s
+            Time by which what leaves a generator follows what enters later than in the model, s. Also
+            outlet_lag_min, outlet_lag_h, outlet_lag_d.
+        """
     def pipe_type(
         self,
         id: str,

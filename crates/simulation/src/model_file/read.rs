@@ -174,6 +174,12 @@ impl ModelReader<'_> {
         if let Some((ground, place)) = &ground {
             self.check_ground(ground, place, run.as_ref().map(|(run, _)| run));
         }
+        let tolerance = self.single::<ToleranceEntry>("tolerance");
+        if let Some((tolerance, place)) = &tolerance {
+            for (field, message) in tolerance.problems() {
+                self.reader.report(refused("[tolerance]", place, Some(field), &message));
+            }
+        }
         let weather = self.weather(run.as_ref().map(|(run, _)| run), start);
         let mut interfaces = Vec::new();
         self.network(text);
@@ -241,6 +247,7 @@ impl ModelReader<'_> {
             ground: ground.as_ref()?.0.clone(),
             ground_place: ground?.1,
             weather,
+            tolerance: tolerance?.0,
             nodes,
             edges,
         };

@@ -72,6 +72,7 @@ pub fn schema() -> Value {
         "fluid": entry(&schema_for!(FluidEntry), &[]),
         "ground": entry(&schema_for!(GroundEntry), &[]),
         "weather": entry(&schema_for!(WeatherEntry), &[]),
+        "tolerance": entry(&schema_for!(ToleranceEntry), &[]),
         "pipe_type": { "type": "object", "additionalProperties": pipe_type },
         "heat_pump_map": {
             "type": "object",

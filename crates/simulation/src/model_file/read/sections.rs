@@ -8,6 +8,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "fluid",
     "ground",
     "weather",
+    "tolerance",
     "pipe_type",
     "heat_pump_map",
     "network",
