@@ -1,4 +1,6 @@
-"""Two houses around the storage, second by second: two gas boilers in a two-pipe connection, or an air-source heat pump."""
+"""Two houses around the storage, second by second: two gas boilers in a two-pipe connection, or an air-source heat pump.
+
+Numba keeps what it compiled until this file changes: touch it where `tank.py` changes."""
 
 import numpy as np
 from numba import njit

@@ -1,4 +1,4 @@
-"""Water in an upright storage: 80 layers, many flows in and out.
+"""Water in an upright storage: 120 layers, many flows in and out.
 
 Second-order upwind with a limiter, so that hardly anything is mixed by the numbers; what real storages mix is a law of its own: an eddy
 conductivity `rho cp v l` of the flow through a layer with a mixing length `l`, beside conduction. Water that lies the wrong way round is mixed at once.
@@ -8,11 +8,11 @@ A jet mixes the surroundings of its inlet; what leaves is drawn from around its 
 import numpy as np
 from numba import njit
 
-LAYERS = 80
+LAYERS = 120
 DENSITY, HEAT_CAPACITY = 987.0, 4180.5  # of 53 degC
 GRAVITY_EXPANSION = 9.81 * 4.7e-4
-REACH_M = 0.0875  # of a jet to either side
-DIFFUSER_M = 0.0875  # height over which a port lets water in and out
+DIFFUSER_M = 1.75 / 60  # height over which a port (of 25 mm) lets water in and out
+REACH_M = DIFFUSER_M  # of a jet to either side
 
 
 @njit(cache=True)

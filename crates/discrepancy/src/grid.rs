@@ -34,6 +34,12 @@ pub(crate) fn finer(experiment: &Experiment) -> Option<Experiment> {
     (!storages.is_empty()).then_some(other)
 }
 
+/// Share of what the layers mix that may be an error: all of it, unless the model says how well its mixing is known. Mixed layers mix as water
+/// that eddies do, and who declares `storage_mixing` has chosen them so that they do by as much.
+pub(crate) fn unknown_share(experiment: &Experiment) -> f64 {
+    experiment.model.tolerance.storage_mixing.map_or(1.0, |half| half.min(1.0))
+}
+
 /// The layer of the finer grid at the height of one of the coarse grid, both from 1.
 fn centre(layer: usize) -> usize {
     FINER * layer - FINER / 2

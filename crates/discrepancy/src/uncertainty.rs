@@ -3,7 +3,8 @@
 //! **Equation** `sigma^2 = noise^2 + lsb^2/12 + (jitter dy/dt)^2 + sigma_num^2 + sigma_in^2 + sigma_0^2`. `sigma_num` is the
 //! difference to half the step, and what storages of three times as many layers show of the error of the grid. `sigma_in` is what noise, resolution and jitter of the measured inputs, and what they did in
 //! their gaps, make of the reading: the mean square over `DRAWS` simulations with inputs drawn anew (the Monte Carlo method
-//! of GUM supplement 1; between two readings nearly as far from the straight line as those beside it are from theirs), smoothed over neighbouring samples. `sigma_0` is what the temperature of the water at
+//! of GUM supplement 1; between two readings nearly as far from the straight line as those beside it are from theirs), and at least what commands that
+//! are switched as early or as late as they may be make of it, over root 3; smoothed over neighbouring samples. `sigma_0` is what the temperature of the water at
 //! the start makes of it, by as much as the first readings differ beyond what the sensors' classes allow (their middle is an
 //! unknown of the fit).
 //!
@@ -16,7 +17,7 @@ use crate::cores::on_all_cores;
 use crate::data::Track;
 use crate::experiment::Experiment;
 use crate::grid;
-use crate::sensors::Role;
+use crate::sensors::{Role, Sensor};
 use crate::unknown::{Target, Unknown};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg32;
@@ -27,11 +28,15 @@ const DRAWS: usize = 6;
 const BESIDE: usize = 1;
 /// An interval so many times the usual one is a gap.
 const GAP: f64 = 2.5;
+/// The earliest and the latest moment of a switch, from the middle between two readings, over their interval.
+const LATEST: f64 = 0.45;
 /// Seed of the first draw: the same data, the same answer.
 const SEED: u64 = 0x5eed;
 /// Least and largest jitter, s, the largest that of a moment anywhere within a second before and after; between them it is equally
 /// distributed over an interval of the readings.
 const JITTER_S: (f64, f64) = (0.5, 0.577);
+/// A reading that is further than this share of a change from either end of it was taken on its way.
+const PASSES: f64 = 0.1;
 /// What lies between two readings over how far they lie from the line between their neighbours.
 const BENT: f64 = 0.4;
 
@@ -61,26 +66,34 @@ pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
         let at: Vec<f64> = at.iter().map(|x| sign * x).collect();
         experiment.readings(&unknowns, &at)
     };
-    let others = on_all_cores(DRAWS + 3, |k| match k {
+    let otherwise = |other: Option<Experiment>| {
+        other.map_or_else(|| Ok(readings.to_vec()), |other| other.readings(&[], &[]))
+    };
+    let others = on_all_cores(DRAWS + 5, |k| match k {
         0 => experiment.simulated(&[], &[], 2).map(|finer| experiment.observed(&finer, &[], &[])),
         1 => started(1.0).or_else(|_| started(-1.0)),
-        2 => grid::finer(experiment)
-            .map_or_else(|| Ok(readings.to_vec()), |finer| finer.readings(&[], &[])),
+        2 => otherwise(grid::finer(experiment)),
+        3 => otherwise(switched_at(experiment, -LATEST)),
+        4 => otherwise(switched_at(experiment, LATEST)),
         _ => drawn(experiment, k as u64).readings(&[], &[]),
     });
     // What was drawn and does not run is not what was.
     let mut others = others.into_iter().map(Result::ok);
-    let [finer, start, layers] = [(); 3].map(|()| others.next().flatten());
+    let [finer, start, layers, early, late] = [(); 5].map(|()| others.next().flatten());
     let draws: Vec<Vec<f64>> = others.flatten().collect();
     let away = |other: &Option<Vec<f64>>, i: usize| {
         other.as_ref().map_or(0.0, |other| other[i] - readings[i])
     };
     let square = |i: usize| {
         let squares = draws.iter().map(|draw| (draw[i] - readings[i]).powi(2));
-        squares.sum::<f64>() / draws.len().max(1) as f64
+        let drawn = squares.sum::<f64>() / draws.len().max(1) as f64;
+        // Few draws may miss the moment of a switch: equally distributed between its earliest and its latest.
+        let switched = away(&early, i).powi(2).max(away(&late, i).powi(2)) / 3.0;
+        drawn.max(switched)
     };
     let squares: Vec<f64> = (0..readings.len()).map(square).collect();
     let samples = &experiment.samples;
+    let unknown_mixing = grid::unknown_share(experiment);
     let jitters: Vec<Vec<f64>> =
         experiment.runs.iter().map(|run| run.tracks.iter().map(jitter_s).collect()).collect();
     let sigma = samples.iter().enumerate().map(|(i, sample)| {
@@ -96,7 +109,7 @@ pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
         let (sum, count) =
             beside.fold((0.0, 0.0), |(sum, count), j| (sum + squares[j], count + 1.0));
         let noise = experiment.accuracy[sample.sensor].noise;
-        let layers = grid::WHOLE * away(&layers, i);
+        let layers = unknown_mixing * grid::WHOLE * away(&layers, i);
         let rest = away(&finer, i).powi(2) + away(&start, i).powi(2) + layers * layers;
         (noise * noise + moved * moved + rest + sum / count).sqrt()
     });
@@ -110,52 +123,94 @@ fn drawn(experiment: &Experiment, draw: u64) -> Experiment {
     for run in &mut other.runs {
         for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
             if sensor.role == Role::Input {
-                let is_flow = ["kg_s", "m3_s"].contains(&sensor.si().as_str());
                 let (track, noise) = (&run.tracks[i], experiment.accuracy[i].noise);
-                let track =
-                    if sensor.si() == "1" { switched(track, &mut random) } else { track.clone() };
-                run.tracks[i] = redrawn(&track, noise, is_flow, &mut random);
+                let kind = match sensor.si().as_str() {
+                    "kg_s" | "m3_s" => Kind::Flow,
+                    "1" => Kind::Command,
+                    _ => Kind::Other,
+                };
+                let mut later = || {
+                    let x: f64 = StandardNormal.sample(&mut random);
+                    (x / 12.0_f64.sqrt()).clamp(-LATEST, LATEST)
+                };
+                let moved = (kind == Kind::Command).then(|| switched(track, &mut later));
+                run.tracks[i] = redrawn(moved.as_ref().unwrap_or(track), noise, kind, &mut random);
             }
         }
     }
     other
 }
 
-/// A command, switched on and off at any moment of the intervals between its readings.
-fn switched(track: &Track, random: &mut Pcg32) -> Track {
-    let usual_s = interval_s(track);
-    let mut drawn = track.clone();
-    let is_off: Vec<bool> = track.value.iter().map(|y| *y == 0.0).collect();
-    for i in 1..is_off.len() {
-        let early: f64 = StandardNormal.sample(random);
-        if is_off[i] != is_off[i - 1] && track.time_s[i] - track.time_s[i - 1] < GAP * usual_s {
-            // Both readings beside it, by less than half of an interval: the order stays.
-            let moved_s = usual_s * (early / 12.0_f64.sqrt()).clamp(-0.45, 0.45);
-            drawn.time_s[i - 1] = track.time_s[i - 1] + moved_s;
-            drawn.time_s[i] = track.time_s[i] + moved_s;
+/// The experiment with all commands switched by a share of the interval of their readings later; none without commands.
+fn switched_at(experiment: &Experiment, later: f64) -> Option<Experiment> {
+    let sensors = experiment.sensors.sensor.iter().enumerate();
+    let of_command = |(_, s): &(usize, &Sensor)| s.role == Role::Input && s.si() == "1";
+    let commands: Vec<usize> = sensors.filter(of_command).map(|(i, _)| i).collect();
+    let mut other = experiment.clone();
+    for run in &mut other.runs {
+        for &i in &commands {
+            run.tracks[i] = switched(&run.tracks[i], || later);
         }
     }
-    drawn
+    (!commands.is_empty()).then_some(other)
 }
 
-fn redrawn(track: &Track, noise: f64, is_flow: bool, random: &mut Pcg32) -> Track {
+/// A command, switched on and off later than in the middle between two readings, by these shares of their interval.
+fn switched(track: &Track, mut later: impl FnMut() -> f64) -> Track {
+    let usual_s = interval_s(track);
+    let mut moved = track.clone();
+    for i in 1..track.value.len() {
+        let switches = (track.value[i] == 0.0) != (track.value[i - 1] == 0.0);
+        if switches && track.time_s[i] - track.time_s[i - 1] < GAP * usual_s {
+            // Both readings beside it: the order stays.
+            let moved_s = usual_s * later();
+            moved.time_s[i - 1] = track.time_s[i - 1] + moved_s;
+            moved.time_s[i] = track.time_s[i] + moved_s;
+        }
+    }
+    moved
+}
+
+/// What a measured input is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// A flow: off, or on.
+    Flow,
+    /// A command: off, or on, with nothing between; half of a load between two readings would be a run before the run.
+    Command,
+    /// Anything else.
+    Other,
+}
+
+/// A measured input as it may have been between its readings, in its gaps, and but for its noise.
+fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
+    let is_flow = kind == Kind::Flow;
     let mut normal = || -> f64 { StandardNormal.sample(random) };
     let usual_s = interval_s(track);
-    // A flow changes in steps: at any moment of the interval.
-    let jitter_s = if is_flow { usual_s / 12.0_f64.sqrt() } else { jitter_s(track) };
     let (t, y) = (&track.time_s, &track.value);
+    // A flow changes in steps, at any moment of the interval, unless it was read on its way.
+    let moment_s = |i: usize| {
+        if is_flow && !on_its_way(y, i) { usual_s / 12.0_f64.sqrt() } else { jitter_s(track) }
+    };
     let forward = y.iter().all(|y| *y >= 0.0);
+    let is_off = |k: usize| kind != Kind::Other && y[k] == 0.0;
+    // Whether a command is switched beside a reading.
+    let switches = |i: usize| {
+        kind == Kind::Command && (i.saturating_sub(1)..=(i + 1).min(y.len() - 1)).any(is_off)
+    };
     // How far a reading lies from the straight line between its neighbours: so much may lie between two readings.
     let bent = |i: usize| {
-        let inner = i > 0 && i + 1 < t.len();
+        let inner = i > 0 && i + 1 < t.len() && !switches(i);
         if inner { (y[i] - between(t, y, i - 1, i + 1, t[i])).abs() } else { 0.0 }
     };
     let mut drawn = Track { time_s: Vec::new(), value: Vec::new() };
     for i in 0..t.len() {
         let (before, after) = (i.saturating_sub(1), (i + 1).min(t.len() - 1));
         let rate = (y[after] - y[before]) / (t[after] - t[before]).max(1e-9);
-        let moved = if t[after] - t[before] < GAP * 2.0 * usual_s { rate * jitter_s } else { 0.0 };
-        let off = is_flow && y[i] == 0.0;
+        let moved =
+            if t[after] - t[before] < GAP * 2.0 * usual_s { rate * moment_s(i) } else { 0.0 };
+        let moved = if switches(i) { 0.0 } else { moved };
+        let off = is_off(i);
         let value = if off { 0.0 } else { y[i] + noise * normal() + moved * normal() };
         drawn.time_s.push(t[i]);
         drawn.value.push(if is_flow && forward { value.max(0.0) } else { value });
@@ -171,7 +226,7 @@ fn redrawn(track: &Track, noise: f64, is_flow: bool, random: &mut Pcg32) -> Trac
                 drawn.time_s.push(t[i] + share * gap_s);
                 drawn.value.push(if is_flow && forward { bridge.max(0.0) } else { bridge });
             }
-        } else if after > i && !off {
+        } else if after > i && !off && !(switches(i) && is_off(after)) {
             let middle_s = 0.5 * (t[i] + t[after]);
             let middle = 0.5 * (y[i] + y[after]) + BENT * bent(i).max(bent(after)) * normal();
             drawn.time_s.push(middle_s);
@@ -179,6 +234,19 @@ fn redrawn(track: &Track, noise: f64, is_flow: bool, random: &mut Pcg32) -> Trac
         }
     }
     drawn
+}
+
+/// Whether a reading, or one beside it, lies between two levels: the change takes longer than an interval, and its moment is read.
+fn on_its_way(y: &[f64], i: usize) -> bool {
+    let passes = |k: usize| {
+        let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| y[k]), y.get(k + 1)) else {
+            return false;
+        };
+        let (first, second) =
+            ((y[k] - before) / (after - before), (after - y[k]) / (after - before));
+        first > PASSES && second > PASSES
+    };
+    (i.saturating_sub(1)..=(i + 1).min(y.len() - 1)).any(passes)
 }
 
 /// Linear between two readings.
@@ -191,6 +259,36 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_flow_that_is_read_on_its_way_changes_when_it_was_read() {
+        let step = [0.0, 0.0, 8.0, 8.0, 8.0];
+        assert!((0..5).all(|i| !on_its_way(&step, i)));
+        let ramp = [0.0, 0.0, 3.0, 8.0, 8.0, 8.0];
+        assert_eq!(
+            [0, 1, 2, 3, 4, 5].map(|i| on_its_way(&ramp, i)),
+            [false, true, true, true, false, false]
+        );
+        // Of a steady flow nothing changes.
+        assert!(!on_its_way(&[8.0; 3], 1));
+    }
+
+    #[test]
+    fn a_command_is_off_or_on_and_nothing_between() {
+        let track = Track {
+            time_s: (0..6).map(|k| 10.0 * f64::from(k)).collect(),
+            value: vec![0.0, 0.0, 0.6, 0.6, 0.0, 0.0],
+        };
+        // 4.5 s later: both readings beside each switch, which lies between them.
+        let late = switched(&track, || LATEST);
+        assert_eq!(late.time_s, [0.0, 14.5, 24.5, 34.5, 44.5, 50.0]);
+        let drawn = redrawn(&late, 0.01, Kind::Command, &mut Pcg32::new(1, 1));
+        // One more reading within the run; a load of nothing stays nothing, and there is none between.
+        assert_eq!(drawn.time_s, [0.0, 14.5, 24.5, 29.5, 34.5, 44.5, 50.0]);
+        let off: Vec<bool> = drawn.value.iter().map(|y| *y == 0.0).collect();
+        assert_eq!(off, [true, true, false, false, false, true, true]);
+        assert!((drawn.value[2] - 0.6).abs() < 0.05 && drawn.value[2] != 0.6);
+    }
+
+    #[test]
     fn a_gap_is_as_uncertain_as_the_input_is_restless() {
         // Readings every 10 s that swing by 2; one gap of 100 s, readings alike at its ends.
         let mut track = Track { time_s: Vec::new(), value: Vec::new() };
@@ -200,7 +298,7 @@ mod tests {
         }
         let mut largest = 0.0_f64;
         for draw in 0..50 {
-            let drawn = redrawn(&track, 0.0, false, &mut Pcg32::new(1, draw));
+            let drawn = redrawn(&track, 0.0, Kind::Other, &mut Pcg32::new(1, draw));
             // Three points in the gap, one in every other interval.
             assert_eq!(drawn.time_s.len(), 2 * track.time_s.len() + 1);
             largest = largest.max((drawn.at(440.0) - track.at(440.0)).abs());
@@ -208,6 +306,6 @@ mod tests {
         assert!(largest > 0.5, "{largest}");
         // Readings of nothing stay nothing.
         let still = Track { time_s: vec![0.0, 10.0, 20.0], value: vec![0.0; 3] };
-        assert_eq!(redrawn(&still, 0.1, true, &mut Pcg32::new(1, 1)).value, [0.0; 3]);
+        assert_eq!(redrawn(&still, 0.1, Kind::Flow, &mut Pcg32::new(1, 1)).value, [0.0; 3]);
     }
 }
