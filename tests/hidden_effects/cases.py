@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import broken
-from detect import Look, shifted, slow, stratum
+from detect import Look, fitted, shifted, slow, still, stratum
 from sensors import JUMPS_AT, ROOT3, draw, measure, spoil
 
 RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
@@ -25,12 +25,6 @@ STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
 SMALLEST, SMALLEST_ZERO = {"S3": 0.6}, 0.3
 # Nats within which two effects are not told apart, and cosine of their signatures.
 TOGETHER, PARALLEL = 3.0, 0.99
-
-
-def still(m_flow, at_s):
-    """Samples around which nothing flows."""
-    least = np.minimum.reduce([np.interp(at_s + dt, np.arange(m_flow.size), m_flow) for dt in (-3, 0, 3)])
-    return least < 1e-6
 
 
 class Draw:
@@ -53,7 +47,11 @@ class Draw:
         variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((offset[s.truth], 1.0), (0.0, 1.02))]
         variants += [variant(look) for _, _, _, variant, look, _, _ in self.plant]
         channels = module.simulate(self.rig, [self.neutral | v for v in variants])
-        look = self.look = Look(self.sensors, channels, self.at_s)
+        look = self.look = Look(self.sensors, channels, self.at_s, fitted(module.split(self.rig), self.at_s))
+        # Readings may lie anywhere on their inputs.
+        moments = [share * self.rig["every_s"] for share in (0, 1 / 3, 2 / 3)] if getattr(module, "READS", False) else []
+        if moments:
+            look.unread([module.simulate(self.rig | {"as_read_s": at_s}, [self.neutral]) for at_s in moments])
         for j, s in enumerate(inputs):
             _, _, noise = s.limits(channels[s.truth][0])
             first = 1 + len(tolerances) + 2 * j

@@ -5,18 +5,24 @@ can make of the same readings, times their standard deviations. The expected gai
 `<r, r>/2` with `<a, b> = a.b - a.G (1 + G'G)^-1 G'.b`.
 """
 
+import tomllib
+
 import numpy as np
 
 from sensors import ROOT3, lagged
+
+# Noise of a sample that says nothing, in any unit.
+NOTHING = 1e12
 
 
 class Look:
     """Readings of all compared sensors of a rig as one vector, over the noise.
 
-    Noise: of the sensor, its resolution, and the moment of a reading, which is only known to lie within its interval.
+    Noise: of the sensor, its resolution, and the moment of a reading, which is only known to lie within its interval. Samples that
+    are not given to be fitted (`fitted`: which are) say nothing: what is kept to be shown, and what is left out after a change.
     """
 
-    def __init__(self, sensors, base, at_s):
+    def __init__(self, sensors, base, at_s, fitted):
         self.sensors = [s for s in sensors if s.role == "compare"]
         self.at_s, self.channels = at_s, base
         self.base = self.readings(base)
@@ -26,8 +32,8 @@ class Look:
             rate = np.gradient(self.sampled(lagged(y, sensor.lag_s)), at_s)
             _, _, noise = sensor.limits(y)
             moment = rate * (at_s[1] - at_s[0]) / 12**0.5
-            still = base[sensor.blank][0][at_s.astype(int)] < 1e-6 if sensor.blank else False
-            sigma.append(np.where(still, 1e6, np.sqrt(1.25 * noise**2 + sensor.resolution_si() ** 2 / 12 + moment**2)))
+            blank = still(base[sensor.blank][0], at_s) if sensor.blank else False
+            sigma.append(np.where(blank | ~fitted, NOTHING, np.sqrt(1.25 * noise**2 + sensor.resolution_si() ** 2 / 12 + moment**2)))
         self.sigma = np.concatenate(sigma)
         self.g = np.zeros((self.sigma.size, 0))
 
@@ -42,6 +48,12 @@ class Look:
         before = self.sigma.copy()
         self.sigma = np.hypot(before, signature * before * noise)
         self.g *= (before / self.sigma)[:, None]
+
+    def unread(self, others):
+        """Noise of what inputs do between two readings: what the plant does where it is driven by what is read of them, at several moments."""
+        squares = np.mean([self.of(channels, 0) ** 2 for channels in others], axis=0).reshape(len(self.sensors), -1)
+        beside = np.pad(squares, ((0, 0), (1, 1)), mode="edge")
+        self.noisier(np.sqrt((beside[:, :-2] + beside[:, 1:-1] + beside[:, 2:]) / 3).ravel(), 1.0)
 
     def of(self, channels, k):
         """Signature of variant k."""
@@ -80,12 +92,24 @@ class Look:
         return abs(self.inner(a, b)) / max(np.sqrt(self.inner(a, a) * self.inner(b, b)), 1e-12)
 
 
+def still(m_flow, at_s):
+    """Samples around which nothing flows."""
+    least = np.minimum.reduce([np.interp(at_s + dt, np.arange(m_flow.size), m_flow) for dt in (-3, 0, 3)])
+    return least < 1e-6
+
+
 def slow(tau):
     return lambda y: lagged(y, tau)
 
 
 def shifted(delta):
     return lambda y: np.interp(np.arange(y.size) + delta, np.arange(y.size), y)
+
+
+def fitted(split, at_s):
+    """Which samples a split (the text of the file) gives to be fitted: those that identify, and those that validate."""
+    blocks = [b for b in tomllib.loads(split)["block"] if b["role"] != "show"]
+    return np.any([(at_s >= b["from_s"]) & (at_s <= b["until_s"]) for b in blocks], axis=0)
 
 
 def stratum(gain):

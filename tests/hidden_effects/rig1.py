@@ -6,7 +6,7 @@ Rich: temperatures between and behind the pipes, pressure losses of both. Poor: 
 import numpy as np
 
 from pipe import Pipe, Plug
-from sensors import FLOW, SPARE_S, TEMPERATURE, Sensor
+from sensors import FLOW, SPARE_S, TEMPERATURE, Sensor, as_read
 
 NAME = "R1"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -14,6 +14,7 @@ FIRST_S = 200  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 FLOWS_THROUGH = True  # without storages
+READS = True  # can be driven by what is read of its inputs
 AS_BUILT = {"P1"}  # as strong as the pipe is thick
 ONE_SIDED = {"P4", "P5", "P6", "P7", "P8", "S4"}
 
@@ -88,7 +89,7 @@ def program(rig):
         flow[begin : begin + int(rig["pause_s"][i])] = 0.0
     flow = np.where(flow == 0, 0, np.convolve(np.pad(flow, 10, mode="edge"), np.full(21, 1 / 21), "valid"))  # pumps ramp
     inlet = np.interp(t, points_t, points) + 0.3 * np.sin(2 * np.pi * t / rig["period"])
-    return inlet, flow
+    return as_read(rig, inlet), as_read(rig, flow)
 
 
 def neutral(rig):

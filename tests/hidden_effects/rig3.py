@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from pipe import Pipe
-from sensors import SPARE_S, TEMPERATURE, Sensor
+from sensors import SPARE_S, TEMPERATURE, Sensor, as_read
 
 NAME = "R3"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -17,6 +17,7 @@ FIRST_S = 280  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 FLOWS_THROUGH = True  # without storages
+READS = True  # can be driven by what is read of its inputs
 AS_BUILT = {"P1"}
 ONE_SIDED = {"H4", "P5", "P7", "P8", "P11", "S4"}
 PIPES = [("stub1", "b1", "j1"), ("line12", "j1", "j2"), ("stub2", "b2", "j2"), ("line23", "j2", "j3")]
@@ -75,7 +76,7 @@ def program(rig):
             speed[begin - 10 : begin] *= np.linspace(1, 0.1, 10)
             speed[begin + 110 : begin + 120] *= np.linspace(0.1, 1, 10)
         out[f"n{k}"] = speed
-    return out
+    return {name: as_read(rig, x) for name, x in out.items()}
 
 
 def neutral(rig):

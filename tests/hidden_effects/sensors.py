@@ -83,6 +83,15 @@ def own_offset(effect, at_s, duration_s):
     return constant + effect.get("drift_k", 0.0) * share + jump
 
 
+def as_read(rig, y):
+    """What is known of an input of every second from its readings: a straight line between two of them, the first at `rig["as_read_s"]`."""
+    if "as_read_s" not in rig:
+        return y
+    t = np.arange(y.size)
+    at_s = np.arange(rig["as_read_s"] - rig["every_s"], y.size + rig["every_s"], rig["every_s"])
+    return np.interp(t, at_s, np.interp(at_s, t, y))
+
+
 def lagged(y, tau):
     """First order, samples of 1 s."""
     if tau <= 0:

@@ -3,6 +3,9 @@
 use crate::error::ExplainError;
 use crate::sensors::{Role, SensorFile};
 
+/// What bends so many times more than readings usually do is beside a corner.
+const CORNER: f64 = 2.0;
+
 /// Readings of one column of one run, in SI, where there is one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
@@ -28,8 +31,10 @@ impl Track {
     }
 
     /// The cubic through the readings with slopes of their neighbours (Catmull and Rom): a straight line cuts the corners of
-    /// a front, which looks like a front that the plant has blurred. Linear where readings are missing.
-    pub fn smooth_at(&self, time_s: f64) -> f64 {
+    /// a front, which looks like a front that the plant has blurred. Linear where readings are missing. Where the readings at both
+    /// ends bend the same way, several times more than they do `usually`, there is a corner between them: the straight lines
+    /// beside go on until they meet. (So much as all the others bend, readings bend without a corner.)
+    pub fn smooth_at(&self, time_s: f64, usually: f64) -> f64 {
         let (t, y) = (&self.time_s, &self.value);
         let i = t.partition_point(|x| *x <= time_s);
         if i < 2 || i + 1 >= t.len() {
@@ -45,7 +50,31 @@ impl Track {
         let slope = |k: usize| (y[k + 1] - y[k - 1]) / (t[k + 1] - t[k - 1]);
         let (a, b, s) = (slope(i - 1) * h, slope(i) * h, (time_s - t[i - 1]) / h);
         let rise = y[i] - y[i - 1];
-        y[i - 1] + s * (a + s * ((3.0 * rise - 2.0 * a - b) + s * (a + b - 2.0 * rise)))
+        let cubic =
+            y[i - 1] + s * (a + s * ((3.0 * rise - 2.0 * a - b) + s * (a + b - 2.0 * rise)));
+        let (one, other) = (self.bend(i - 1), self.bend(i));
+        if one * other <= 0.0 {
+            return cubic;
+        }
+        let line = |k: usize, m: usize| y[k] + (time_s - t[k]) * (y[m] - y[k]) / (t[m] - t[k]);
+        let (before, after) = (line(i - 1, i - 2), line(i, i + 1));
+        let corner = if one < 0.0 { before.max(after) } else { before.min(after) };
+        let share = (1.0 - CORNER * usually / one.abs().min(other.abs())).max(0.0);
+        share * corner + (1.0 - share) * cubic
+    }
+
+    /// How far a reading lies above the straight line between its neighbours.
+    fn bend(&self, i: usize) -> f64 {
+        let (t, y) = (&self.time_s, &self.value);
+        y[i] - y[i - 1] - (y[i + 1] - y[i - 1]) * (t[i] - t[i - 1]) / (t[i + 1] - t[i - 1])
+    }
+
+    /// How far a reading usually lies from the straight line between its neighbours: the median.
+    pub fn usual_bend(&self) -> f64 {
+        let inner = 1..self.time_s.len().saturating_sub(1);
+        let mut bends: Vec<f64> = inner.map(|i| self.bend(i).abs()).collect();
+        bends.sort_by(f64::total_cmp);
+        bends.get(bends.len() / 2).copied().unwrap_or(0.0)
     }
 }
 
@@ -231,14 +260,28 @@ mod tests {
     }
 
     #[test]
+    fn a_corner_between_two_readings_is_where_lines_meet() {
+        // Rests until 2.5 s, then rises by 1 a second: the readings at 2 and 3 s lie 0.25 below the lines between their neighbours.
+        let t: Vec<f64> = (0..8).map(f64::from).collect();
+        let track = Track { value: t.iter().map(|t| (t - 2.5).max(0.0)).collect(), time_s: t };
+        assert_eq!(track.usual_bend(), 0.0);
+        for time_s in [2.2, 2.5, 2.8, 3.5] {
+            let met = track.smooth_at(time_s, 0.0);
+            assert!((met - (time_s - 2.5).max(0.0)).abs() < 1e-12, "{time_s} {met}");
+        }
+        // Where they usually bend half as much it is none: the cubic with slopes of 0.25 and 0.75 at its ends.
+        assert!((track.smooth_at(2.5, 0.125) - 0.1875).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_parabola_is_met_between_its_readings() {
         let t: Vec<f64> = [0.0, 1.0, 2.0, 3.0, 4.0, 9.0].to_vec();
         let track = Track { value: t.iter().map(|t| t * t).collect(), time_s: t };
-        assert!((track.smooth_at(2.5) - 6.25).abs() < 1e-12);
+        assert!((track.smooth_at(2.5, 1.0) - 6.25).abs() < 1e-12);
         // At the end and before a gap it is straight.
-        assert_eq!(track.smooth_at(0.5), 0.5);
-        assert_eq!(track.smooth_at(3.5), track.at(3.5));
-        assert_eq!(track.smooth_at(6.5), track.at(6.5));
+        assert_eq!(track.smooth_at(0.5, 1.0), 0.5);
+        assert_eq!(track.smooth_at(3.5, 1.0), track.at(3.5));
+        assert_eq!(track.smooth_at(6.5, 1.0), track.at(6.5));
     }
 
     #[test]

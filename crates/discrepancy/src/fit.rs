@@ -14,7 +14,7 @@
 use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::{Experiment, Simulated};
-use crate::noise::{Gain, Noise, Residual, whitened};
+use crate::noise::{Gain, Noise, Residual, scale_beside, scaled, whitened};
 use crate::unknown::{Estimate, Target, Unknown};
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
@@ -36,6 +36,8 @@ pub type Slopes = HashMap<Target, Vec<f64>>;
 pub struct Likelihood {
     /// Standard deviation of every sample, SI.
     pub sigma: Vec<f64>,
+    /// The same as it was predicted.
+    pub predicted: Vec<f64>,
     /// The samples that are fitted.
     pub fitted: Vec<usize>,
     /// What a nearly right model leaves behind, by sample; empty: every sample is new.
@@ -49,7 +51,8 @@ pub struct Likelihood {
 impl Likelihood {
     /// To these samples, every one new.
     pub fn new(sigma: Vec<f64>, fitted: Vec<usize>) -> Self {
-        Self { sigma, fitted, filter: Vec::new(), noises: HashMap::new(), temperature: 1.0 }
+        let (predicted, filter, noises) = (sigma.clone(), Vec::new(), HashMap::new());
+        Self { sigma, predicted, fitted, filter, noises, temperature: 1.0 }
     }
 
     /// Residuals over sigma of all samples.
@@ -77,15 +80,36 @@ impl Likelihood {
         DVector::from_iterator(self.fitted.len(), new)
     }
 
+    /// Scales what is predicted beside the noise of each sensor by what these readings leave behind.
+    pub fn rescale(&mut self, experiment: &Experiment, readings: &[f64]) {
+        for sensor in 0..experiment.sensors.sensor.len() {
+            let residual = |&i: &usize| {
+                let sample = &experiment.samples[i];
+                let (value, sigma) = (sample.value - readings[i], self.predicted[i]);
+                Residual { time_s: sample.time_s, value, sigma }
+            };
+            let own = |i: &&usize| experiment.samples[**i].sensor == sensor;
+            let residuals: Vec<Residual> = self.fitted.iter().filter(own).map(residual).collect();
+            let noise = experiment.accuracy[sensor].noise;
+            let scale = scale_beside(&residuals, noise);
+            for (i, sample) in experiment.samples.iter().enumerate() {
+                if sample.sensor == sensor {
+                    self.sigma[i] = scaled(self.predicted[i], noise, scale);
+                }
+            }
+        }
+    }
+
     /// Takes what these readings leave behind for what every nearly right model does.
     pub fn learn(&mut self, experiment: &Experiment, readings: &[f64]) {
+        self.forget();
+        self.rescale(experiment, readings);
         let of = |&i: &usize| {
             let sample = &experiment.samples[i];
             let (value, sigma) = (sample.value - readings[i], self.sigma[i]);
             ((sample.run, sample.sensor), Residual { time_s: sample.time_s, value, sigma })
         };
         let all: Vec<_> = self.fitted.iter().map(of).collect();
-        self.forget();
         for group in all.chunk_by(|a, b| a.0 == b.0) {
             let residuals: Vec<Residual> = group.iter().map(|(_, r)| *r).collect();
             let noise = Noise::of(&residuals);
@@ -94,8 +118,9 @@ impl Likelihood {
         }
     }
 
-    /// Takes every sample for new again.
+    /// Takes every sample for new again, and for as uncertain as was predicted.
     pub fn forget(&mut self) {
+        self.sigma.clone_from(&self.predicted);
         self.filter.clear();
         self.noises.clear();
         self.temperature = 1.0;

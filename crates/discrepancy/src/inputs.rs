@@ -44,11 +44,11 @@ impl Input<'_> {
         if is_flow && self.track.value.iter().all(|y| *y >= 0.0) {
             ahead.value.iter_mut().for_each(|y| *y = y.max(0.0));
         }
-        let smooth = sensor.si() == "k";
+        let smooth = (sensor.si() == "k").then(|| ahead.usual_bend());
         let measured = |k: usize| {
             let time_s = span_s.0 + (k as f64 - 0.5).max(0.0) * step.as_s() - response.clock_s;
-            let reading = if smooth {
-                ahead.smooth_at(time_s)
+            let reading = if let Some(usually) = smooth {
+                ahead.smooth_at(time_s, usually)
             } else if sensor.si() == "1" {
                 self.command(&ahead, time_s)
             } else {

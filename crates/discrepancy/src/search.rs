@@ -116,6 +116,12 @@ impl<'a> Search<'a> {
             self.likelihood.forget();
             let care = if is_first { Care::Alone } else { Care::Quick };
             let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
+            // As large as what is predicted beside the noise of the sensors really is.
+            self.likelihood.rescale(self.experiment, &null.readings);
+            let from = |(u, at): (&Unknown, &f64)| Unknown { start: *at, ..u.clone() };
+            let started: Vec<Unknown> = self.base.iter().zip(&null.at).map(from).collect();
+            let (likelihood, slopes) = (&self.likelihood, &null.slopes);
+            let null = fit(self.experiment, &started, likelihood, slopes, Care::Quick)?;
             watch.lap("tolerances");
             let z = self.z(&null.readings);
             if is_first {

@@ -127,7 +127,7 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
         )
     } else if explained < EXPLAINED
         && ((winner.validation_z > LEAVES && !(explained > TAKES && surely_foretells(winner)))
-            || (winner.validation_z > DIFFERS && !foretells(winner)))
+            || (winner.validation_z > DIFFERS && !winner.tolerated && !foretells(winner)))
     {
         (
             Verdict::Unexplained,
@@ -249,6 +249,9 @@ mod tests {
         assert_eq!(of(&[everywhere], 1, 3.0, 3.0), Verdict::Named);
         // 1.5^2 - 1 = 1.25 of 1.7^2 - 1 = 1.89: takes away 34 %, and foretells nothing.
         let nothing = Finding { validation_z: 1.5, elpd: -4.0, ..good };
-        assert_eq!(of(&[nothing], 1, 1.7, 1.7), Verdict::Unexplained);
+        assert_eq!(of(std::slice::from_ref(&nothing), 1, 1.7, 1.7), Verdict::Unexplained);
+        // A tolerance that is strained leaves no more than the effect that it imitates.
+        let tolerated = Finding { tolerated: true, ..nothing };
+        assert_eq!(of(&[tolerated], 1, 1.5, 1.5), Verdict::Named);
     }
 }
