@@ -129,33 +129,26 @@ fn exchangers(model: &Model) -> impl Iterator<Item = &str> {
     edges.map(|edge| edge.id.as_str()).chain(units.map(|unit| unit.id.as_str()))
 }
 
-/// Leaks: one node of each part of the graph between measured flows. Where in such a part the water leaves does not show; and none
-/// in a part whose pressure is held, where what is lost is made up for unseen.
+/// Leaks: one node of each part of the graph between measured flows and pressure losses, that where most edges meet. Where in such
+/// a part the water leaves does not show; and none between flows where the pressure is held, and what is lost is made up for unseen.
 fn of_leaks(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let model = &experiment.model;
     let mut largest = 0.0_f64;
-    let mut metered: Vec<&str> = Vec::new();
+    let (mut metered, mut seen): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
     for (k, sensor) in experiment.sensors.sensor.iter().enumerate() {
         let Some((of, quantity)) = sensor.signal.rsplit_once('.') else { continue };
         if quantity.starts_with("m_flow_kg_s") {
             metered.push(of);
             let values = experiment.runs.iter().flat_map(|run| &run.tracks[k].value);
             largest = values.fold(largest, |most, y| most.max(y.abs()));
+        } else if quantity.starts_with("dp_pa") {
+            seen.push(of);
         }
     }
     if metered.len() < 2 || largest <= 0.0 || !sensed(experiment, "kg_s") {
         return;
     }
-    // Every node with the first one of its part.
-    let mut part: HashMap<&str, &str> =
-        model.nodes.iter().map(|n| (n.entry.id.as_str(), n.entry.id.as_str())).collect();
-    for edge in model.edges.iter().filter(|edge| !metered.contains(&edge.id.as_str())) {
-        let (Some(&a), Some(&b)) = (part.get(edge.from.as_str()), part.get(edge.to.as_str()))
-        else {
-            continue;
-        };
-        part.values_mut().filter(|first| **first == b).for_each(|first| *first = a);
-    }
+    let part = parts(model, &metered);
     let held = |first: &str| {
         model.nodes.iter().any(|node| {
             let kept = node.entry.kind == NodeEntryKind::PressureBoundary
@@ -169,17 +162,44 @@ fn of_leaks(experiment: &Experiment, all: &mut Vec<Candidate>) {
         edges.any(|edge| ends(edge).contains(&Some(&first)))
             || metered.iter().any(|of| part.get(of) == Some(&first))
     };
+    let meet = |node: &str| {
+        model
+            .edges
+            .iter()
+            .filter(|edge| [edge.from.as_str(), edge.to.as_str()].contains(&node))
+            .count()
+    };
+    seen.extend(&metered);
+    let finer = parts(model, &seen);
     for node in &model.nodes {
-        let id = node.entry.id.as_str();
-        if part[id] == id && !held(id) && beside_meter(id) {
-            all.push(Candidate::effect(
-                "P11",
-                id,
-                "leak",
-                ("m_flow_kg_s", "kg/s at 1 bar"),
-                |target| Unknown::between(target, 0.001 * largest, 0.05 * largest),
-                "a second flow meter, or another pressure",
-            ));
+        let first = node.entry.id.as_str();
+        if finer[first] != first || held(part[first]) || !beside_meter(part[first]) {
+            continue;
         }
+        let own = finer.iter().filter(|(_, of)| **of == first).map(|(node, _)| *node);
+        // Of several alike the first by name.
+        let Some(id) = own.min_by_key(|node| (usize::MAX - meet(node), *node)) else { continue };
+        all.push(Candidate::effect(
+            "P11",
+            id,
+            "leak",
+            ("m_flow_kg_s", "kg/s at 1 bar"),
+            |target| Unknown::between(target, 0.001 * largest, 0.05 * largest),
+            "a second flow meter, or another pressure",
+        ));
     }
+}
+
+/// Every node with the first one of its part, where the graph is cut at these edges.
+fn parts<'a>(model: &'a Model, cut: &[&str]) -> HashMap<&'a str, &'a str> {
+    let own = model.nodes.iter().map(|n| (n.entry.id.as_str(), n.entry.id.as_str()));
+    let mut part: HashMap<&str, &str> = own.collect();
+    for edge in model.edges.iter().filter(|edge| !cut.contains(&edge.id.as_str())) {
+        let (Some(&a), Some(&b)) = (part.get(edge.from.as_str()), part.get(edge.to.as_str()))
+        else {
+            continue;
+        };
+        part.values_mut().filter(|first| **first == b).for_each(|first| *first = a);
+    }
+    part
 }
