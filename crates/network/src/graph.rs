@@ -7,7 +7,7 @@
 
 use crate::elements::Element;
 use crate::soil::SoilRings;
-use crate::two_port::{Characteristic, EdgeState, Pieces};
+use crate::two_port::{Characteristic, EdgeState, Pieces, TwoPort};
 use crate::well_posed::{Equation, Unknown};
 use anergy_core::ids::{EdgeId, NodeId};
 use anergy_core::medium::Medium;
@@ -64,7 +64,12 @@ impl Edge {
     /// What the edge imposes between its ports.
     #[inline]
     pub fn characteristic(&self, m_flow_kg_s: f64, state: &EdgeState) -> Characteristic {
-        match self.element.characteristic(m_flow_kg_s, state) {
+        let own = match &self.element {
+            // Nearly all edges are pipes: no call through a table, and inlined.
+            Element::Pipe(pipe) => pipe.characteristic(m_flow_kg_s, state),
+            element => element.characteristic(m_flow_kg_s, state),
+        };
+        match own {
             Characteristic::PressureLoss(loss) if self.loss_factor != 1.0 => {
                 Characteristic::PressureLoss(loss.scaled(self.loss_factor))
             }

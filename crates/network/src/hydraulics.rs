@@ -101,6 +101,8 @@ pub struct HydraulicSolver {
     known_state: Vec<EdgeState>,
     known_m_kg_s: Vec<f64>,
     known: bool,
+    /// What the pressures drive less the loss at the flows of the last trial, Pa.
+    miss_pa: Vec<f64>,
     /// Newton step of each edge, kg/s.
     step: Vec<f64>,
     trial_m_kg_s: Vec<f64>,
@@ -135,6 +137,7 @@ impl HydraulicSolver {
             known_state: vec![nowhere; edges],
             known_m_kg_s: vec![0.0; edges],
             known: false,
+            miss_pa: vec![0.0; edges],
             step: vec![0.0; edges],
             trial_m_kg_s: vec![0.0; edges],
             trial_laws: laws(),
@@ -242,13 +245,15 @@ impl HydraulicSolver {
     ) -> Result<Option<HydraulicReport>, HydraulicError> {
         self.evaluate(network, state)?;
         self.system.begin(network, state, &self.kind, &self.laws)?;
+        self.system.misses(state, &self.laws, &mut self.miss_pa);
         let mut mass_balanced = false;
         for iteration in 1..=most {
             let overshoot = if iteration <= HASTY_ITERATIONS { OVERSHOOT_SHARE } else { 0.0 };
             // While the heads move the content does too: only full steps meet what is given.
             let together = self.heads.together;
             let line_search = mass_balanced && !(together && iteration <= heads::FULL_TOGETHER);
-            self.system.newton_step(state, &self.kind, &self.laws, &mut self.step)?;
+            let Self { system, kind, laws, miss_pa, step, .. } = self;
+            system.newton_step(state, kind, laws, miss_pa, step)?;
             if together {
                 self.meet(network, state)?;
             }

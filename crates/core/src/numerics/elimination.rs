@@ -59,6 +59,12 @@ impl Elimination {
             row[next[j] as usize] = i;
             next[j] += 1;
         });
+        Self::of_columns(start, row, updates)
+    }
+
+    /// With the columns of L below the diagonal, the rows of each ascending, and the number of their updates.
+    fn of_columns(start: Vec<u32>, row: Vec<u32>, updates: usize) -> Self {
+        let n = start.len() - 1;
         let value = vec![0.0; n + row.len()];
         let mut analyzed = Self { n, start, row, target: None, value };
         if updates <= MAX_UPDATES_PER_COLUMN * n {
@@ -69,6 +75,13 @@ impl Elimination {
             analyzed.target = Some(target);
         }
         analyzed
+    }
+
+    /// With an order whose columns are known.
+    pub(super) fn in_order(start: Vec<u32>, row: Vec<u32>) -> Self {
+        let lengths = start.windows(2).map(|ends| (ends[1] - ends[0]) as usize);
+        let updates = lengths.map(|length| length * length.saturating_sub(1) / 2).sum();
+        Self::of_columns(start, row, updates)
     }
 
     /// Whether the list of updates is short enough to be kept.
@@ -151,6 +164,10 @@ impl Elimination {
         let column = |j: usize| self.start[j] as usize..self.start[j + 1] as usize;
         for j in 0..self.n {
             let xj = x[j];
+            // What is put in at a few places does not reach all.
+            if xj == 0.0 {
+                continue;
+            }
             for (&i, l) in self.row[column(j)].iter().zip(&below[column(j)]) {
                 x[i as usize] += l * xj;
             }

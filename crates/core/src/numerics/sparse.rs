@@ -6,6 +6,7 @@
 //! faer.
 
 use super::elimination::Elimination;
+use super::minimum_degree::{self, Order};
 use crate::error::FactorError;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
@@ -93,18 +94,22 @@ enum Method {
 /// Elimination in an order of its own.
 struct Ordered {
     elimination: Elimination,
-    /// Place of each unknown in the order of elimination.
+    /// Place of each unknown in the order of elimination; empty where they are counted in that order.
     place: Vec<u32>,
     work: Vec<f64>,
 }
 
 impl Ordered {
     fn slot(&self, i: usize, j: usize) -> Option<usize> {
-        let (i, j) = (self.place[i] as usize, self.place[j] as usize);
+        let place = |i: usize| self.place.get(i).map_or(i, |&place| place as usize);
+        let (i, j) = (place(i), place(j));
         self.elimination.slot(i.max(j), i.min(j))
     }
 
     fn solve_in_place(&mut self, x: &mut [f64]) {
+        if self.place.is_empty() {
+            return self.elimination.solve_in_place(x);
+        }
         for (&place, &x) in self.place.iter().zip(&*x) {
             self.work[place as usize] = x;
         }
@@ -176,6 +181,19 @@ impl ConductanceSolver {
     /// # Errors
     /// [`FactorError::Symbolic`] when the ordering fails.
     pub fn analyze(n: usize, pairs: &[(usize, usize)]) -> Result<Self, FactorError> {
+        let between = pairs.iter().copied().filter(|(i, j)| i != j);
+        if let Some(Order { place, start, row }) = minimum_degree::order(n, between) {
+            let elimination = Elimination::in_order(start, row);
+            if elimination.is_recorded() {
+                let ordered = Ordered { elimination, place, work: vec![0.0; n] };
+                return Ok(Self { n, method: Method::Recorded(ordered) });
+            }
+        }
+        Self::analyze_mesh(n, pairs)
+    }
+
+    /// The same with the order of AMD.
+    fn analyze_mesh(n: usize, pairs: &[(usize, usize)]) -> Result<Self, FactorError> {
         let failed = FactorError::Symbolic { unknowns: n };
         let lower = Columns::new(n, pairs.iter().map(|&(i, j)| (i.max(j), i.min(j))));
         let (mut forward, mut place) = (vec![0_u32; n], vec![0_u32; n]);
@@ -219,6 +237,15 @@ impl ConductanceSolver {
             use_careful: false,
         };
         Ok(Self { n, method: Method::Blocked(Box::new(blocked)) })
+    }
+
+    /// From now on counts the unknowns in the order of elimination, which saves to put them there and back in every
+    /// solution: the new number of each; none where the numbers stay.
+    pub fn count_in_order(&mut self) -> Vec<u32> {
+        match &mut self.method {
+            Method::Recorded(ordered) => std::mem::take(&mut ordered.place),
+            Method::Blocked(_) => Vec::new(),
+        }
     }
 
     /// Where the conductance between i and j is kept in [`Self::values_mut`], for `i = j` that to given

@@ -343,6 +343,7 @@ impl PipeParams {
 }
 
 impl TwoPort for Pipe {
+    #[inline]
     fn characteristic(&self, m: f64, state: &EdgeState) -> Characteristic {
         let per_density = 1.0 / state.density_kg_m3;
         let friction = match &self.law {

@@ -20,8 +20,9 @@ const NONE: u32 = u32::MAX;
 struct EdgeSlots {
     node_a: u32,
     node_b: u32,
-    unknown_a: u32,
-    unknown_b: u32,
+    /// Where the balances of its ends are kept; the place behind those of the unknowns where the pressure is fixed.
+    balance_a: u32,
+    balance_b: u32,
     /// Between the unknowns, or from one to a fixed pressure.
     conductance: u32,
 }
@@ -35,7 +36,10 @@ pub(super) struct NodalSystem {
     to_fixed: Vec<u32>,
     gravity_pa: Vec<f64>,
     ideal_links: Vec<IdealLink>,
+    /// Net inflow of each unknown, then its increment; one place more for what leaves at fixed pressures.
     increment: Vec<f64>,
+    /// Conductance of each edge in the matrix, kg/(s Pa).
+    edge_conductance: Vec<f64>,
     net_inflow: Vec<f64>,
     /// Nodes with a given flow.
     sources: Vec<u32>,
@@ -65,7 +69,8 @@ impl NodalSystem {
                 count += 1;
             }
         }
-        let unknown_of_node: Vec<u32> = (0..n).map(|i| unknown_of_root[merged.find(i)]).collect();
+        let mut unknown_of_node: Vec<u32> =
+            (0..n).map(|i| unknown_of_root[merged.find(i)]).collect();
         let ends = |i: usize| {
             let edge = &network.edges[i];
             (unknown_of_node[edge.from.index()], unknown_of_node[edge.to.index()])
@@ -75,7 +80,17 @@ impl NodalSystem {
             .filter(|&(a, b)| a != NONE && b != NONE && a != b)
             .map(|(a, b)| (a as usize, b as usize))
             .collect();
-        let conductances = ConductanceSolver::analyze(count as usize, &pairs)?;
+        let mut conductances = ConductanceSolver::analyze(count as usize, &pairs)?;
+        let order = conductances.count_in_order();
+        if !order.is_empty() {
+            for unknown in unknown_of_node.iter_mut().filter(|unknown| **unknown != NONE) {
+                *unknown = order[*unknown as usize];
+            }
+        }
+        let ends = |i: usize| {
+            let edge = &network.edges[i];
+            (unknown_of_node[edge.from.index()], unknown_of_node[edge.to.index()])
+        };
         let slot = |a: u32, b: u32| {
             let (a, b) = if a == NONE {
                 (b, b)
@@ -94,8 +109,8 @@ impl NodalSystem {
             .map(|(i, (a, b))| EdgeSlots {
                 node_a: network.edges[i].from.0,
                 node_b: network.edges[i].to.0,
-                unknown_a: a,
-                unknown_b: b,
+                balance_a: a.min(count),
+                balance_b: b.min(count),
                 conductance: if a == b { NONE } else { slot(a, b) },
             })
             .collect();
@@ -116,7 +131,8 @@ impl NodalSystem {
             to_fixed,
             gravity_pa,
             ideal_links: ideal_forest(network),
-            increment: vec![0.0; count as usize],
+            increment: vec![0.0; count as usize + 1],
+            edge_conductance: vec![0.0; edges],
             net_inflow: vec![0.0; n],
             sources: (0..n as u32)
                 .filter(|&i| network.nodes[i as usize].kind == NodeKind::Source)
@@ -125,6 +141,13 @@ impl NodalSystem {
             largest_p_pa: 0.0,
             islands: Islands::new(n, edges),
         })
+    }
+
+    /// What each law misses, Pa.
+    pub(super) fn misses(&self, state: &NetworkState, laws: &Laws, miss_pa: &mut [f64]) {
+        for (i, (miss, loss)) in miss_pa.iter_mut().zip(&laws.loss).enumerate() {
+            *miss = self.driving_pa(state, i) - loss;
+        }
     }
 
     /// Pressure difference of an edge without its hydrostatic part, Pa: what its law has to answer.
@@ -191,6 +214,7 @@ impl NodalSystem {
         state: &mut NetworkState,
         kind: &[Kind],
         laws: &Laws,
+        miss_pa: &[f64],
         step: &mut [f64],
     ) -> Result<(), HydraulicError> {
         self.start_balance(state);
@@ -199,6 +223,7 @@ impl NodalSystem {
         let mut largest_conductance = 0.0_f64;
         for (i, slots) in self.slots.iter().enumerate() {
             let m = state.m_flow_kg_s[i];
+            let mut conductance = 0.0;
             step[i] = match kind[i] {
                 Kind::Ideal => {
                     step[i] = 0.0;
@@ -206,46 +231,56 @@ impl NodalSystem {
                 }
                 Kind::Imposed => laws.loss[i] - m,
                 Kind::Law => {
-                    let conductance = 1.0 / laws.slope[i];
+                    conductance = 1.0 / laws.slope[i];
                     largest_conductance = largest_conductance.max(conductance);
                     if slots.conductance != NONE {
                         values[slots.conductance as usize] += conductance;
                     }
-                    let gravity_pa = self.gravity_pa[i];
-                    let driving = driving_pa(&state.p_pa, &self.p_rest_pa, slots, gravity_pa);
-                    conductance * (driving - laws.loss[i])
+                    conductance * miss_pa[i]
                 }
             };
+            self.edge_conductance[i] = conductance;
             balance(&mut self.increment, slots, m + step[i]);
         }
         self.tie_floating(largest_conductance);
         self.conductances.factor()?;
-        self.spread(state, kind, laws, step);
+        self.solve();
+        self.spread(state, step);
         Ok(())
     }
 
-    /// Adds what heads in some edges, Pa, change in the pressures and the step, at the last factorisation.
+    /// Adds what heads in some edges, Pa, change in the pressures and the step, at the last factorisation; `responses`
+    /// are those to 1 Pa in each of them one after another, or none.
     pub(super) fn push(
         &mut self,
         state: &mut NetworkState,
-        kind: &[Kind],
         laws: &mut Laws,
         heads: impl Iterator<Item = (usize, f64)>,
+        responses: &[f64],
         step: &mut [f64],
     ) {
         self.increment.fill(0.0);
+        let mut responses = responses.chunks_exact(self.increment.len());
+        let known = responses.len() > 0;
         for (edge, head) in heads {
             laws.loss[edge] -= head;
             let flow = head / laws.slope[edge];
             step[edge] += flow;
-            balance(&mut self.increment, &self.slots[edge], flow);
+            match responses.next() {
+                Some(response) => {
+                    self.increment.iter_mut().zip(response).for_each(|(x, by)| *x += head * by);
+                }
+                None => balance(&mut self.increment, &self.slots[edge], flow),
+            }
         }
-        self.spread(state, kind, laws, step);
+        if !known {
+            self.solve();
+        }
+        self.spread(state, step);
     }
 
-    /// Solves for the net inflow in `increment`: moves the pressures by it and the step by what they drive.
-    fn spread(&mut self, state: &mut NetworkState, kind: &[Kind], laws: &Laws, step: &mut [f64]) {
-        self.conductances.solve_in_place(&mut self.increment);
+    /// Moves the pressures by their increment and the step by what that drives.
+    fn spread(&mut self, state: &mut NetworkState, step: &mut [f64]) {
         self.largest_p_pa = 0.0;
         let pressures = state.p_pa.iter_mut().zip(&mut self.p_rest_pa);
         for ((p, rest), &unknown) in pressures.zip(&self.unknown_of_node) {
@@ -258,12 +293,17 @@ impl NodalSystem {
             }
             self.largest_p_pa = self.largest_p_pa.max(p.abs());
         }
-        for (i, slots) in self.slots.iter().enumerate().filter(|(i, _)| kind[*i] == Kind::Law) {
-            let at = |unknown: u32| {
-                if unknown == NONE { 0.0 } else { self.increment[unknown as usize] }
-            };
-            step[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / laws.slope[i];
+        for ((slots, conductance), step) in self.slots.iter().zip(&self.edge_conductance).zip(step)
+        {
+            *step += conductance * difference(&self.increment, slots);
         }
+    }
+
+    /// Solves for the net inflow in `increment`; nothing changes where the pressure is fixed.
+    fn solve(&mut self) {
+        let unknowns = self.increment.len() - 1;
+        self.increment[unknowns] = 0.0;
+        self.conductances.solve_in_place(&mut self.increment[..unknowns]);
     }
 
     /// Whether an end of an edge lies in a part without a pressure level.
@@ -348,10 +388,12 @@ fn driving_pa(p_pa: &[f64], rest_pa: &[f64], slots: &EdgeSlots, gravity_pa: f64)
 /// Adds the flow of an edge to the balances of its ends.
 #[inline]
 fn balance(net_inflow: &mut [f64], slots: &EdgeSlots, m_flow_kg_s: f64) {
-    if slots.unknown_a != NONE {
-        net_inflow[slots.unknown_a as usize] -= m_flow_kg_s;
-    }
-    if slots.unknown_b != NONE {
-        net_inflow[slots.unknown_b as usize] += m_flow_kg_s;
-    }
+    net_inflow[slots.balance_a as usize] -= m_flow_kg_s;
+    net_inflow[slots.balance_b as usize] += m_flow_kg_s;
+}
+
+/// What the increments of its ends differ by, Pa.
+#[inline]
+fn difference(increment: &[f64], slots: &EdgeSlots) -> f64 {
+    increment[slots.balance_a as usize] - increment[slots.balance_b as usize]
 }

@@ -24,6 +24,9 @@ const MAX_TOGETHER: u32 = 15;
 /// The first of them, without a line search.
 pub(super) const FULL_TOGETHER: u32 = 8;
 
+/// Responses to so many heads are kept, so that their change needs no further solution.
+const KEPT: usize = 4;
+
 /// Work space for the heads of the free edges and for what changes between solves.
 #[derive(Debug, Default)]
 pub(super) struct Heads {
@@ -36,6 +39,8 @@ pub(super) struct Heads {
     /// The last change, Pa.
     pub(super) last_change: Vec<f64>,
     system: DenseSystem,
+    /// Responses of all unknowns to 1 Pa of each head sought, where these are few; otherwise empty.
+    responses: Vec<f64>,
     /// Prescriptions that change between held and limit, with how much they miss.
     pub(super) changes: Vec<(f64, usize, Hold)>,
     /// Flows and pressures before the heads were sought.
@@ -53,6 +58,7 @@ impl Heads {
             change: Vec::with_capacity(n),
             last_change: Vec::with_capacity(n),
             system: DenseSystem::with_room(n),
+            responses: Vec::with_capacity(n.min(KEPT) * (network.nodes.len() + 1)),
             changes: Vec::with_capacity(n),
             m_before_kg_s: of(network.edges.len()),
             p_before_pa: of(network.nodes.len()),
@@ -103,10 +109,10 @@ impl HydraulicSolver {
         }
         self.solve_heads_system(network, state)?;
         self.take_heads(network);
-        let Self { system, kind, laws, step, heads, .. } = self;
+        let Self { system, laws, step, heads, .. } = self;
         let pushes = heads.sought.iter().zip(&heads.change);
         let pushes = pushes.map(|(&k, &head)| (network.prescriptions[k].free.index(), head));
-        system.push(state, kind, laws, pushes, step);
+        system.push(state, laws, pushes, &heads.responses, step);
         Ok(())
     }
 
@@ -145,9 +151,13 @@ impl HydraulicSolver {
     ) -> Result<(), HydraulicError> {
         let n = self.heads.sought.len();
         self.heads.system.begin(n);
+        self.heads.responses.clear();
         for column in 0..n {
             let free = network.prescriptions[self.heads.sought[column]].free;
             self.system.respond(free.index(), &self.laws);
+            if n <= KEPT {
+                self.heads.responses.extend_from_slice(self.system.responses());
+            }
             let mut largest = 0.0_f64;
             for row in 0..n {
                 let j = self.heads.sought[row];

@@ -43,19 +43,18 @@ impl HydraulicSolver {
         line_search: bool,
         overshoot: f64,
     ) -> Result<Trial, HydraulicError> {
-        // Slope of the content at the start of the step.
-        let mut start = 0.0;
-        let mut moved = 0.0;
-        for (i, step) in self.step.iter().enumerate() {
-            if self.kind[i] == Kind::Law {
-                moved += step.abs();
-                start -= step * step * self.laws.slope[i];
-            }
-        }
         let mut trial = self.evaluate_trial(network, state, 1.0)?;
-        // Below the rounding of the pressures the slope says nothing, and only a full step balances mass.
-        let rounding = PRESSURE_ROUNDING * self.system.largest_p_pa() * moved;
-        if line_search && trial.content_slope > rounding - overshoot * start {
+        // Where the content still falls at its end, the full step is none too long.
+        let mut start = 0.0;
+        let mut overshoots = line_search && trial.content_slope > 0.0;
+        if overshoots {
+            let (content_slope, moved) = self.start_of_step();
+            start = content_slope;
+            // Below the rounding of the pressures the slope says nothing, and only a full step balances mass.
+            let rounding = PRESSURE_ROUNDING * self.system.largest_p_pa() * moved;
+            overshoots = trial.content_slope > rounding - overshoot * start;
+        }
+        if overshoots {
             // The full step overshoots the minimum of the content along it: false position and halving.
             let (mut low, mut low_slope, mut high, mut high_slope) =
                 (0.0, start, 1.0, trial.content_slope);
@@ -86,6 +85,15 @@ impl HydraulicSolver {
         Ok(trial)
     }
 
+    /// Slope of the content at the start of the step, and the sum of what all flows move by.
+    fn start_of_step(&self) -> (f64, f64) {
+        let steps = self.step.iter().zip(&self.laws.slope).zip(&self.kind);
+        let laws = steps.filter(|(_, kind)| **kind == Kind::Law);
+        laws.fold((0.0, 0.0), |(content_slope, moved), ((step, slope), _)| {
+            (content_slope - step * step * slope, moved + step.abs())
+        })
+    }
+
     /// Laws at the flows that this share of the step leads to.
     fn evaluate_trial(
         &mut self,
@@ -94,6 +102,7 @@ impl HydraulicSolver {
         share: f64,
     ) -> Result<Trial, HydraulicError> {
         let mut trial = Trial { content_slope: 0.0, residual_pa: 0.0, correction: 0.0 };
+        let extreme_pa = self.extreme_pa();
         for (i, edge) in network.edges.iter().enumerate() {
             let m = state.m_flow_kg_s[i] + share * self.step[i];
             self.trial_m_kg_s[i] = m;
@@ -111,14 +120,15 @@ impl HydraulicSolver {
             let slope = law.slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
             self.trial_laws.loss[i] = law.value;
             self.trial_laws.slope[i] = slope;
+            self.miss_pa[i] = miss;
             trial.content_slope -= self.step[i] * miss;
             let size = miss.abs();
             if !size.is_finite() {
-                return Err(HydraulicError::NotFinite { edge: EdgeId::from_index(i) });
+                return Err(self.not_finite(network, state, i));
             }
             trial.residual_pa = trial.residual_pa.max(size);
             let tolerance = slope * (CORRECTION_KG_S + CORRECTION_RELATIVE * m.abs());
-            let rounding = self.rounding_pa(law.value);
+            let rounding = PRESSURE_ROUNDING * extreme_pa.max(law.value.abs());
             if size - rounding > trial.correction * tolerance {
                 trial.correction = (size - rounding) / tolerance;
             }
@@ -130,15 +140,15 @@ impl HydraulicSolver {
     /// are not: a limiter at rest misses 1e-6 Pa with a slope of 1e6 Pa s/kg, and its flow by 1e-8 kg/s.
     /// Laws whose slope did not change over the last step are straight enough.
     pub(super) fn surrounds(&self, network: &Network, state: &NetworkState) -> bool {
+        let extreme_pa = self.extreme_pa();
         // The step exchanged the laws: those of the trial are the ones before it.
         let slopes = self.laws.slope.iter().zip(&self.trial_laws.slope);
         slopes.zip(&network.edges).enumerate().all(|(i, ((&slope, &before), edge))| {
             if self.kind[i] != Kind::Law || (slope - before).abs() <= STRAIGHT * slope {
                 return true;
             }
-            let (m, loss) = (state.m_flow_kg_s[i], self.laws.loss[i]);
-            let miss = self.system.driving_pa(state, i) - loss;
-            if miss.abs() <= self.rounding_pa(loss) {
+            let (m, loss, miss) = (state.m_flow_kg_s[i], self.laws.loss[i], self.miss_pa[i]);
+            if miss.abs() <= PRESSURE_ROUNDING * extreme_pa.max(loss.abs()) {
                 return true;
             }
             let allowed = 2.0 * (CORRECTION_KG_S + CORRECTION_RELATIVE * m.abs());
@@ -149,10 +159,10 @@ impl HydraulicSolver {
         })
     }
 
-    /// Rounding of a pressure loss, Pa.
-    fn rounding_pa(&self, loss: f64) -> f64 {
+    /// The largest pressure where it is one that no component holds, otherwise 0, Pa: what is below its rounding does
+    /// not count.
+    fn extreme_pa(&self) -> f64 {
         let largest_p_pa = self.system.largest_p_pa();
-        let extreme = if largest_p_pa > EXTREME_PA { largest_p_pa } else { 0.0 };
-        PRESSURE_ROUNDING * extreme.max(loss.abs())
+        if largest_p_pa > EXTREME_PA { largest_p_pa } else { 0.0 }
     }
 }

@@ -45,6 +45,7 @@ pub(super) enum Stand {
 
 impl Stand {
     /// The answer in place of the element's.
+    #[inline]
     pub(super) fn characteristic(
         self,
         m: f64,

@@ -28,8 +28,13 @@ impl HydraulicSolver {
         let much_pa = SHARE * self.system.largest_p_pa();
         let mut any = false;
         for (i, edge) in network.edges.iter().enumerate() {
-            let (loss, driving) = (self.laws.loss[i].abs(), self.system.driving_pa(state, i).abs());
-            if self.kind[i] != Kind::Law || loss <= much_pa || loss <= RATIO * driving {
+            let loss = self.laws.loss[i].abs();
+            if self.kind[i] != Kind::Law || loss <= much_pa {
+                continue;
+            }
+            let driving_pa = self.system.driving_pa(state, i);
+            let driving = driving_pa.abs();
+            if loss <= RATIO * driving {
                 continue;
             }
             // As if the loss rose with the square of the flow.
@@ -42,6 +47,7 @@ impl HydraulicSolver {
                 state.m_flow_kg_s[i] = m;
                 self.laws.loss[i] = law.value;
                 self.laws.slope[i] = law.slope.clamp(SLOPE_FLOOR, SLOPE_CAP);
+                self.miss_pa[i] = driving_pa - law.value;
                 any = true;
             }
         }

@@ -34,8 +34,33 @@ pub(super) struct SampledChain {
     late: i32,
     phi: [[f64; MOST]; MOST],
     gamma: [f64; MOST],
-    phi_rest: [[f64; MOST]; MOST],
-    gamma_rest: [f64; MOST],
+    reading: Reading,
+}
+
+/// How the last lag of a sampled chain, the reading, follows the ones before it.
+#[derive(Debug, Clone, Copy)]
+struct Reading {
+    /// Over a whole interval, from each lag and from the command.
+    by_ahead: [f64; MOST - 1],
+    by_command: f64,
+    /// Over the rest of an interval, from each lag, from the command, and from the lag of the sensor itself.
+    by_ahead_rest: [f64; MOST - 1],
+    by_command_rest: f64,
+    by_itself_rest: f64,
+}
+
+impl Reading {
+    /// The answer, from what it shares with other chains.
+    #[inline]
+    fn through(&self, ahead: &[C64; MOST - 1], behind: C64, late: C64) -> C64 {
+        let mut before = C64::new(self.by_command, 0.0);
+        let mut rest = C64::new(self.by_command_rest, 0.0);
+        for ((v, now), later) in ahead.iter().zip(&self.by_ahead).zip(&self.by_ahead_rest) {
+            before += v * now;
+            rest += v * later;
+        }
+        late * (rest + before * behind * self.by_itself_rest)
+    }
 }
 
 impl Chain {
@@ -69,7 +94,23 @@ impl Chain {
         #[allow(clippy::cast_possible_truncation)]
         let late = whole as i32 + 1;
         let (n, ahead) = (self.lags_s.len(), self.ahead);
-        SampledChain { n, ahead, late, phi, gamma, phi_rest, gamma_rest }
+        let mut reading = Reading {
+            by_ahead: [0.0; MOST - 1],
+            by_command: 0.0,
+            by_ahead_rest: [0.0; MOST - 1],
+            // Without any lag the reading is the command.
+            by_command_rest: 1.0,
+            by_itself_rest: 0.0,
+        };
+        if let Some(last) = n.checked_sub(1) {
+            reading.by_ahead[..ahead].copy_from_slice(&phi[last][..ahead]);
+            reading.by_ahead_rest[..ahead].copy_from_slice(&phi_rest[last][..ahead]);
+            (reading.by_command, reading.by_command_rest) = (gamma[last], gamma_rest[last]);
+            if n > ahead {
+                reading.by_itself_rest = phi_rest[last][last];
+            }
+        }
+        SampledChain { n, ahead, late, phi, gamma, reading }
     }
 
     /// State after a time over the state before it, and over a command held meanwhile.
@@ -94,7 +135,7 @@ impl Chain {
 impl SampledChain {
     /// The answer to a held command at a value of z.
     pub fn at(&self, z: C64) -> C64 {
-        self.through(&self.ahead(z), self.behind(z), self.late(z))
+        self.reading.through(&self.ahead(z), self.behind(z), self.late(z))
     }
 
     /// The dead time, which all chains of its sensor have.
@@ -103,8 +144,8 @@ impl SampledChain {
     }
 
     /// Lags of actuator and water, which all chains behind them have: `(z - Phi) v = Gamma`, Phi lower triangular.
-    fn ahead(&self, z: C64) -> [C64; MOST] {
-        let mut v = [Complex::new(0.0, 0.0); MOST];
+    fn ahead(&self, z: C64) -> [C64; MOST - 1] {
+        let mut v = [Complex::new(0.0, 0.0); MOST - 1];
         for i in 0..self.ahead {
             let before: C64 = (0..i).map(|k| v[k] * self.phi[i][k]).sum();
             v[i] = (before + self.gamma[i]) / (z - self.phi[i][i]);
@@ -115,25 +156,6 @@ impl SampledChain {
     /// The lag of the sensor alone, which all its chains have.
     fn behind(&self, z: C64) -> C64 {
         if self.n > self.ahead { (z - self.phi[self.n - 1][self.n - 1]).inv() } else { z }
-    }
-
-    /// The answer, from what it shares with other chains.
-    fn through(&self, ahead: &[C64; MOST], behind: C64, late: C64) -> C64 {
-        if self.n == 0 {
-            return late;
-        }
-        let last = self.n - 1;
-        let (row, row_rest) = (&self.phi[last], &self.phi_rest[last]);
-        let mut before = C64::new(self.gamma[last], 0.0);
-        let mut rest = C64::new(self.gamma_rest[last], 0.0);
-        for ((v, now), later) in ahead[..self.ahead].iter().zip(row).zip(row_rest) {
-            before += v * now;
-            rest += v * later;
-        }
-        if self.n > self.ahead {
-            rest += before * behind * row_rest[last];
-        }
-        late * rest
     }
 }
 
@@ -146,6 +168,8 @@ pub(super) struct Chains {
     sensor_of: Vec<usize>,
     /// Sensor by sensor; empty where the controllers are continuous.
     sampled: Vec<SampledChain>,
+    /// Their readings: all that differs from pair to pair.
+    readings: Vec<Reading>,
     /// Lag of the water in all of them, s.
     water_lag_s: f64,
     interval_s: f64,
@@ -168,13 +192,16 @@ impl Chains {
         let chain = |(lag_s, seen): (f64, Seen)| {
             Chain::new(lag_s, water_lag_s, seen.lag_s, seen.dead_s).sampled(interval_s)
         };
-        let sampled = if interval_s > 0.0 { pairs.map(chain).collect() } else { Vec::new() };
+        let sampled: Vec<_> =
+            if interval_s > 0.0 { pairs.map(chain).collect() } else { Vec::new() };
+        let readings = sampled.iter().map(|chain| chain.reading).collect();
         Self {
             actuator_lags_s: lags,
             sensors,
             actuator_of,
             sensor_of,
             sampled,
+            readings,
             water_lag_s,
             interval_s,
         }
@@ -212,7 +239,7 @@ impl Chains {
         let behind: Vec<_> = first.map(|chain| (chain.behind(z), chain.late(z))).collect();
         gains.map_with_location(|i, j, gain| {
             let (behind, late) = behind[of[i]];
-            self.sampled[of[i] * n + to[j]].through(&ahead[to[j]], behind, late) * gain
+            self.readings[of[i] * n + to[j]].through(&ahead[to[j]], behind, late) * gain
         })
     }
 

@@ -7,6 +7,7 @@
 //! what is left to the end is what the pivots, all in the right half plane, stand away from the real axis. **Sources**
 //! `skogestad2005` (argument principle).
 
+use super::elimination::rows;
 use super::loops::Loops;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::PI;
@@ -55,13 +56,9 @@ impl Determinant {
             let factors = lambdas.iter().map(|lambda| lambda * common + 1.0);
             return Self::product(factors, largest * common.norm());
         }
-        let matrix = case.loops.matrix(s) * C64::new(factor, 0.0);
-        let sum = |entries: &mut dyn Iterator<Item = &C64>| {
-            entries.map(|x| x.re.abs() + x.im.abs()).sum::<f64>()
-        };
-        let rows = matrix.row_iter().map(|row| sum(&mut row.iter())).fold(0.0, f64::max);
-        let columns = matrix.column_iter().map(|c| sum(&mut c.iter())).fold(0.0, f64::max);
-        let norm = rows.min(columns);
+        let mut matrix = case.loops.matrix(s);
+        matrix.iter_mut().for_each(|entry| *entry *= factor);
+        let norm = norm(&matrix);
         match pivots(&matrix) {
             Some(pivots) => Self::product(pivots.into_iter(), norm),
             None => {
@@ -99,14 +96,26 @@ impl Determinant {
     }
 }
 
+/// The smaller one of the largest sums of a row and of a column.
+fn norm(matrix: &DMatrix<C64>) -> f64 {
+    let (mut rows, mut largest) = (vec![0.0; matrix.nrows()], 0.0_f64);
+    for column in matrix.column_iter() {
+        let mut sum = 0.0;
+        for (row, entry) in rows.iter_mut().zip(column.iter()) {
+            let size = entry.re.abs() + entry.im.abs();
+            *row += size;
+            sum += size;
+        }
+        largest = largest.max(sum);
+    }
+    rows.into_iter().fold(0.0, f64::max).min(largest)
+}
+
 /// Pivots of `1 + M` in the order of its rows; `None` where one is lost.
 fn pivots(matrix: &DMatrix<C64>) -> Option<Vec<C64>> {
     let n = matrix.nrows();
     // Row by row, real and imaginary parts apart: the inner loop is one of plain numbers.
-    let part = |of: fn(&C64) -> f64| -> Vec<f64> {
-        (0..n * n).map(|k| of(&matrix[(k / n, k % n)])).collect()
-    };
-    let (mut re, mut im) = (part(|x| x.re), part(|x| x.im));
+    let (mut re, mut im) = rows(matrix);
     (0..n).for_each(|i| re[i * n + i] += 1.0);
     let largest = |i: usize| {
         let row = re[i * n..(i + 1) * n].iter().chain(&im[i * n..(i + 1) * n]);
@@ -120,11 +129,12 @@ fn pivots(matrix: &DMatrix<C64>) -> Option<Vec<C64>> {
             return None;
         }
         pivots.push(pivot);
+        let inverse = pivot.inv();
         let (upper_re, lower_re) = re.split_at_mut((k + 1) * n);
         let (upper_im, lower_im) = im.split_at_mut((k + 1) * n);
         let (row_re, row_im) = (&upper_re[k * n + k + 1..], &upper_im[k * n + k + 1..]);
         for (own_re, own_im) in lower_re.chunks_exact_mut(n).zip(lower_im.chunks_exact_mut(n)) {
-            let share = C64::new(own_re[k], own_im[k]) / pivot;
+            let share = C64::new(own_re[k], own_im[k]) * inverse;
             let own = own_re[k + 1..].iter_mut().zip(&mut own_im[k + 1..]);
             for ((x, y), (a, b)) in own.zip(row_re.iter().zip(row_im)) {
                 *x -= share.re * a - share.im * b;
@@ -189,7 +199,11 @@ pub(super) fn count_growing(case: &Case, factor: f64) -> i64 {
 fn stays_quiet(case: &Case, factor: f64, omega: f64, high: f64) -> bool {
     (1..=QUIET_AGAIN).all(|i| {
         let share = f64::from(i) / f64::from(QUIET_AGAIN);
-        Determinant::of(case, factor, omega * (high / omega).powf(share)).norm < 1.0
+        let s = C64::new(0.0, omega * (high / omega).powf(share));
+        match &case.lambdas {
+            Some(_) => Determinant::of(case, factor, s.im).norm < 1.0,
+            None => factor * norm(&case.loops.matrix(s)) < 1.0,
+        }
     })
 }
 

@@ -19,14 +19,12 @@ impl Eliminated {
     /// Eliminates a matrix; `None` where it is singular or not a number.
     pub fn of(matrix: &DMatrix<C64>) -> Option<Self> {
         let n = matrix.nrows();
-        let part = |of: fn(&C64) -> f64| -> Vec<f64> {
-            (0..n * n).map(|k| of(&matrix[(k / n, k % n)])).collect()
-        };
-        let mut all = Self { n, re: part(|x| x.re), im: part(|x| x.im), order: (0..n).collect() };
+        let (re, im) = rows(matrix);
+        let mut all = Self { n, re, im, order: (0..n).collect() };
         for k in 0..n {
-            let size = |i: &usize| all.at(*i, k).norm_sqr();
-            let pivot = (k..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
-            if !(size(&pivot) > 0.0 && size(&pivot).is_finite()) {
+            let sizes = (k..n).map(|i| (all.at(i, k).norm_sqr(), i));
+            let (size, pivot) = sizes.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            if !(size > 0.0 && size.is_finite()) {
                 return None;
             }
             all.exchange(k, pivot);
@@ -42,9 +40,10 @@ impl Eliminated {
     fn exchange(&mut self, i: usize, j: usize) {
         if i != j {
             self.order.swap(i, j);
-            let n = self.n;
+            let (n, low, high) = (self.n, i.min(j), i.max(j));
             for part in [&mut self.re, &mut self.im] {
-                (0..n).for_each(|k| part.swap(i * n + k, j * n + k));
+                let (upper, lower) = part.split_at_mut(high * n);
+                upper[low * n..(low + 1) * n].swap_with_slice(&mut lower[..n]);
             }
         }
     }
@@ -66,16 +65,22 @@ impl Eliminated {
     /// The solution for a right-hand side.
     pub fn solve(&self, b: &DVector<C64>) -> DVector<C64> {
         let n = self.n;
-        let mut x: Vec<C64> = self.order.iter().map(|&i| b[i]).collect();
+        let mut x_re: Vec<f64> = self.order.iter().map(|&i| b[i].re).collect();
+        let mut x_im: Vec<f64> = self.order.iter().map(|&i| b[i].im).collect();
+        let row = |i: usize, of: std::ops::Range<usize>| {
+            let of = i * n + of.start..i * n + of.end;
+            (&self.re[of.clone()], &self.im[of])
+        };
         for i in 1..n {
-            let known: C64 = (0..i).map(|k| self.at(i, k) * x[k]).sum();
-            x[i] -= known;
+            let known = dot(row(i, 0..i), (&x_re[..i], &x_im[..i]));
+            (x_re[i], x_im[i]) = (x_re[i] - known.re, x_im[i] - known.im);
         }
         for i in (0..n).rev() {
-            let known: C64 = (i + 1..n).map(|k| self.at(i, k) * x[k]).sum();
-            x[i] = (x[i] - known) / self.at(i, i);
+            let known = dot(row(i, i + 1..n), (&x_re[i + 1..], &x_im[i + 1..]));
+            let value = (C64::new(x_re[i], x_im[i]) - known) / self.at(i, i);
+            (x_re[i], x_im[i]) = (value.re, value.im);
         }
-        DVector::from_vec(x)
+        DVector::from_iterator(n, x_re.into_iter().zip(x_im).map(|(re, im)| C64::new(re, im)))
     }
 
     /// The inverse of the matrix.
@@ -107,6 +112,30 @@ impl Eliminated {
         }
         DMatrix::from_fn(n, n, |i, j| C64::new(re[i * n + j], im[i * n + j]))
     }
+}
+
+/// Real and imaginary parts of a matrix, row by row.
+pub(super) fn rows(matrix: &DMatrix<C64>) -> (Vec<f64>, Vec<f64>) {
+    let n = matrix.nrows();
+    let (mut re, mut im) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for (j, column) in matrix.column_iter().enumerate() {
+        for (i, entry) in column.iter().enumerate() {
+            (re[i * n + j], im[i * n + j]) = (entry.re, entry.im);
+        }
+    }
+    (re, im)
+}
+
+/// Sum of the products of two rows.
+fn dot((a_re, a_im): (&[f64], &[f64]), (b_re, b_im): (&[f64], &[f64])) -> C64 {
+    let mut sums = [0.0; 4];
+    for ((a, b), (x, y)) in a_re.iter().zip(a_im).zip(b_re.iter().zip(b_im)) {
+        sums[0] += a * x;
+        sums[1] += b * y;
+        sums[2] += a * y;
+        sums[3] += b * x;
+    }
+    C64::new(sums[0] - sums[1], sums[2] + sums[3])
 }
 
 /// `own -= share other`.

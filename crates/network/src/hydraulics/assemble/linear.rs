@@ -1,6 +1,6 @@
 //! The linear answer of the nodal system to small disturbances.
 
-use super::{EdgeSlots, NONE, NodalSystem, balance};
+use super::{EdgeSlots, NONE, NodalSystem, balance, difference};
 use crate::graph::Network;
 use crate::hydraulics::{HydraulicError, Kind, Laws};
 
@@ -84,23 +84,20 @@ impl NodalSystem {
         for (i, slots) in self.slots.iter().enumerate() {
             let mut m = pushed_kg_s[i];
             if kind[i] == Kind::Law {
-                m += difference(slots, shift_pa) / laws.slope[i];
+                m += shift_between(slots, shift_pa) / laws.slope[i];
             }
             if kind[i] != Kind::Ideal {
                 balance(&mut self.increment, slots, m);
             }
             m_flow_kg_s[i] = m;
         }
-        self.conductances.solve_in_place(&mut self.increment);
+        self.solve();
         for (node, p) in p_pa.iter_mut().enumerate() {
             *p = shift_pa[node] + self.response_pa(node);
         }
         for (i, slots) in self.slots.iter().enumerate().filter(|(i, _)| kind[*i] == Kind::Law) {
             // Not from the pressures: the differences of a stiff network would drown in them.
-            let at = |unknown| {
-                if unknown == NONE { 0.0 } else { self.increment[unknown as usize] }
-            };
-            m_flow_kg_s[i] += (at(slots.unknown_a) - at(slots.unknown_b)) / laws.slope[i];
+            m_flow_kg_s[i] += difference(&self.increment, slots) / laws.slope[i];
         }
         if !self.ideal_links.is_empty() {
             self.flows_of_ideal_heads(network, inflow_kg_s, m_flow_kg_s);
@@ -169,7 +166,12 @@ impl NodalSystem {
     pub(in crate::hydraulics) fn respond(&mut self, edge: usize, laws: &Laws) {
         self.increment.fill(0.0);
         balance(&mut self.increment, &self.slots[edge], 1.0 / laws.slope[edge]);
-        self.conductances.solve_in_place(&mut self.increment);
+        self.solve();
+    }
+
+    /// Response of all unknowns, Pa/Pa; one place more for the fixed pressures.
+    pub(in crate::hydraulics) fn responses(&self) -> &[f64] {
+        &self.increment
     }
 
     /// Response of the pressure of a node, Pa/Pa.
@@ -186,6 +188,6 @@ impl NodalSystem {
 }
 
 /// `p_a - p_b` of an edge.
-fn difference(slots: &EdgeSlots, p_pa: &[f64]) -> f64 {
+fn shift_between(slots: &EdgeSlots, p_pa: &[f64]) -> f64 {
     p_pa[slots.node_a as usize] - p_pa[slots.node_b as usize]
 }
