@@ -6,6 +6,8 @@ use crate::experiment::Experiment;
 use crate::sensors::Sensor;
 use crate::unknown::Unknown;
 
+/// A depth of water between this share of a layer and a whole one is not told from the layer.
+const LEAST_LAYER: f64 = 1e-3;
 /// What the efficiency at part load may be off without an effect over what each load of it may be.
 const PART: f64 = 2.0;
 
@@ -56,7 +58,10 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
         let id = unit.id.as_str();
         let kind = unit.params.kind();
         if kind == "storage" && warm {
-            of_storage(id, &known, all);
+            let written = unit.params.to_value();
+            let [height_m, layers] = ["height_m", "layers"].map(|name| written[name].as_f64());
+            let layer_m = height_m.zip(layers).map_or(0.0, |(height_m, layers)| height_m / layers);
+            of_storage(id, &known, layer_m, all);
         }
         if power && is_generator(kind) {
             of_generator(id, &known, all);
@@ -142,21 +147,24 @@ fn factor(
     Candidate::effect(id, component, words, ("factor", "1"), range, separates)
 }
 
-fn of_storage(id: &str, known: &Known, all: &mut Vec<Candidate>) {
+fn of_storage(id: &str, known: &Known, layer_m: f64, all: &mut Vec<Candidate>) {
     let standby = "a day without flow, and the temperature of the room";
     let loss = factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby);
     all.push(loss.tolerated(0.0, known.storage_loss));
     let idle = "hours without flow";
     let mixing = factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle);
     all.push(mixing.tolerated(0.0, known.storage_mixing));
-    all.push(Candidate::effect(
+    let beyond = Candidate::effect(
         "T3",
         id,
         "water beyond the ports that takes part",
         ("depth_m", "m"),
         |target| Unknown::between(target, 0.02, 0.4),
         "a sensor below the lowest port",
-    ));
+    );
+    // Anything down to a thousandth of a layer of the model may be the layer.
+    let sd = 0.5 * LEAST_LAYER.ln().abs();
+    all.push(beyond.tolerated((LEAST_LAYER * layer_m).max(f64::MIN_POSITIVE).ln(), sd));
     all.push(Candidate::effect(
         "T4",
         id,
