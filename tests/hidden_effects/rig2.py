@@ -190,8 +190,8 @@ def model(rig):
     start = rig["start"]
     lines = ["format = 1", "[model]", 'name = "house"', "[run]", f'until = "{BLOCK_S * BLOCKS:.0f}s"', 'step = "10s"', 'record = "10s"', f"initial_degc = {start}",
              "[fluid]", 'kind = "constant_water"', f"density_kg_m3 = {DENSITY}", f"heat_capacity_j_kg_k = {house.HEAT_CAPACITY}",
-             # What `tolerances` draws (the loss with half a kelvin of 27; 3 % of the mixing by the flow are half of what water conducts), and the metal of a boiler: 4.5 kJ/K over 0.4 kW/K of its flow.
-             "[tolerance]", "storage_loss = 0.07", "storage_mixing = 0.5", "efficiency = 0.013", "part_load = 0.01", "start = 0.08", "outlet_lag_s = 10",
+             # What `tolerances` draws (the loss with half a kelvin of 27; 3 % of the mixing by the flow are half of what water conducts), and the metal of a boiler to twice: 4.5 kJ/K over 0.4 kW/K of its flow are 11 s.
+             "[tolerance]", "storage_loss = 0.07", "storage_mixing = 0.5", "efficiency = 0.013", "part_load = 0.01", "start = 0.08", f"outlet_lag_s = {5 if rig['pump'] else 20}",
              "[[unit]]", 'id = "storage"', 'kind = "storage"', f"volume_m3 = {rig['volume']}", f"height_m = {rig['height']}", f"layers = {LAYERS}", f"ua_w_k = {rig['ua']}",
              f"ambient_degc = {rig['around']}", f"conductivity_w_m_k = {rig.get('conductivity', 0.644)}", 'buoyancy = "at_once"']
     high, low = layer(18.5), layer(1.5)
