@@ -88,6 +88,7 @@ mod tests {
             flags: Vec::new(),
             strain: 0.0,
             beyond: 0.0,
+            takes_along: 0.0,
             tolerated: false,
             within: false,
             validation_z: 1.0,

@@ -63,6 +63,8 @@ pub struct Finding {
     pub strain: f64,
     /// Distance from the middle of the range of the effect, standard deviations.
     pub beyond: f64,
+    /// How far it takes what else is uncertain of the same sensor from the middle of its range, standard deviations.
+    pub takes_along: f64,
     /// Whether its quantity is a tolerance that is fitted without it too.
     pub tolerated: bool,
     /// Whether it is no more than the tolerance of its quantity: a sensor that drifts within its class.

@@ -153,6 +153,7 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
 
 #[cfg(test)]
 mod tests {
+    use super::super::wins::adds;
     use super::*;
     use crate::unknown::Estimate;
 
@@ -172,6 +173,7 @@ mod tests {
             elpd_error: 1.0,
             strain: 1.0,
             beyond: 1.0,
+            takes_along: 0.0,
             tolerated: false,
             within: false,
             validation_z: 1.0,
@@ -225,6 +227,15 @@ mod tests {
             [strained, finding("B", 28.0), Finding { strain: 1.9, ..finding("C", 29.0) }];
         // Of those within two standard deviations the one with more evidence; 2 ln(9/2) = 3.0 nats less for 9 of them.
         assert_eq!(ids(&class(&findings, &[true, false, false], 3.0)), ["C", "B", "A"]);
+    }
+
+    #[test]
+    fn a_second_effect_takes_nothing_out_of_its_range() {
+        let good = finding("A", 30.0);
+        let far = Finding { beyond: 3.5, ..good.clone() };
+        let blur = Finding { takes_along: 3.5, ..good.clone() };
+        assert_eq!([&good, &far, &blur].map(|f| adds(f, 0)), [true; 3]);
+        assert_eq!([&good, &far, &blur].map(|f| adds(f, 1)), [true, false, false]);
     }
 
     #[test]

@@ -2,11 +2,13 @@
 
 use super::wins::{TOGETHER, together};
 use super::{AS_WELL, Search, TRIED, WARM, excess, prior};
+use crate::catalogue::Candidate;
 use crate::elpd;
 use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};
 use crate::fit::Fit;
 use crate::trial::Tried;
+use crate::unknown::Unknown;
 
 impl Search<'_> {
     /// Findings of what was tried, best first; what does badly on samples that were not fitted is refuted and comes last.
@@ -60,6 +62,7 @@ impl Search<'_> {
                     elpd,
                     elpd_error,
                     strain: candidate.strain(t.fit.at[place]),
+                    takes_along: takes_along(candidate, &t.unknowns, &t.fit.at),
                     tolerated: self.base.iter().any(|u| u.target == candidate.unknown.target),
                     within: candidate.within(t.fit.at[place]),
                     beyond: (t.fit.at[place] - candidate.unknown.mean).abs() / candidate.unknown.sd,
@@ -94,6 +97,14 @@ fn blocks(samples: &[Sample], fitted: &[usize]) -> Vec<(usize, usize)> {
         (0..parts).map(move |i| (at(i), at(i + 1)))
     };
     blocks.into_iter().flat_map(cut).collect()
+}
+
+/// How far the tolerances of the sensor that an effect is a flaw of are from the middle of their ranges, standard deviations.
+fn takes_along(candidate: &Candidate, unknowns: &[Unknown], at: &[f64]) -> f64 {
+    let Some(sensor) = candidate.unknown.target.sensor() else { return 0.0 };
+    let of_it = |u: &Unknown| u.target.sensor() == Some(sensor) && !candidate.owns(u);
+    let far = unknowns.iter().zip(at).filter(|(u, _)| of_it(u)).map(|(u, x)| (x - u.mean) / u.sd);
+    far.fold(0.0, |most, far| most.max(far.abs()))
 }
 
 /// What the data leave open about a fitted value.

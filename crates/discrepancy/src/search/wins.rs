@@ -45,8 +45,9 @@ pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
 pub(super) fn adds(f: &Finding, taken: usize) -> bool {
     match taken {
         0 => true,
-        // What has to be out of its range is no explanation: so much is left for `unexplained`.
-        _ if f.beyond > BEYOND => false,
+        // What has to be out of its range is no explanation: so much is left for `unexplained`. Nor is a clock against a lag of
+        // the same sensor beyond what it can have: together they are a blur of the model, not a flaw of the sensor.
+        _ if f.beyond.max(f.takes_along) > BEYOND => false,
         1 => f.elpd > FORETELLS.1 * f.elpd_error,
         _ => f.evidence > STRAINS && foretells(f),
     }
