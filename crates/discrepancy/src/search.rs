@@ -281,10 +281,29 @@ impl<'a> Search<'a> {
         let close = tried.partition_point(|t| t.fit.log_evidence > most - near).min(MOST_CLOSE);
         let thorough: Vec<Start> = tried.drain(..close).map(Start::again).collect();
         tried.extend(self.common().fits(&thorough, Care::Thorough));
+        let null = self.null_beside(null, &tried)?;
         watch.lap("fits again");
         let null_z = self.z(&null.readings);
         let findings = self.ranked(&null, &mut tried);
         Ok(Some(Round { null_z, tried, findings, ..none }))
+    }
+
+    /// The fit without an effect once more, from the tolerances that the best one has found: where it was only stuck, the effect
+    /// gains nothing.
+    fn null_beside(&self, null: Fit, tried: &[Tried]) -> Result<Fit, ExplainError> {
+        let evidence = |t: &&Tried| t.fit.log_evidence;
+        let Some(best) = tried.iter().max_by(|a, b| evidence(a).total_cmp(&evidence(b))) else {
+            return Ok(null);
+        };
+        let from = |u: &Unknown| {
+            let place = best.unknowns.iter().position(|v| v.target == u.target);
+            let place = place.filter(|place| !best.places.contains(place));
+            Unknown { start: place.map_or(u.start, |place| best.fit.at[place]), ..u.clone() }
+        };
+        let beside: Vec<Unknown> = self.base.iter().map(from).collect();
+        let slopes = &best.fit.slopes;
+        let again = fit(self.experiment, &beside, &self.likelihood, slopes, Care::Thorough)?;
+        Ok(if again.log_evidence > null.log_evidence { again } else { null })
     }
 
     /// The power of the likelihood: see [`TEMPERATURE`] and [`LOUD`].
