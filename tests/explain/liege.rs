@@ -158,7 +158,7 @@ fn wall_leads(explanation: &Explanation) {
 }
 
 /// The specification expects a class here. In the evidence the slow sensor is as near as ever; what it leaves on samples that were
-/// not fitted is five times as much since inputs keep the corners of fronts, so that it is refuted, and the wall is what is there.
+/// not fitted is five times as much with corners of fronts kept and sigma scaled, so that it is refuted, and the wall is what is there.
 #[test]
 fn of_one_record_the_wall_leads_and_only_samples_not_fitted_refute_the_slow_sensor() {
     let Some(explanation) = explained(&[FAST], None) else { return };

@@ -123,10 +123,8 @@ impl Measured<'_> {
             let boundary = cuts.iter().zip(&flows).enumerate().map(|(i, (node, flow))| {
                 let times_s = times(measured);
                 let water = &measured.tracks[self.t[node]];
-                let t_k = {
-                    let usually = water.usual_bend();
-                    times_s.iter().map(|t| water.smooth_at(*t, usually)).collect()
-                };
+                let usually = water.usual_bend();
+                let t_k = times_s.iter().map(|t| water.smooth_at(*t, usually)).collect();
                 let values = match flow {
                     Some(flow) if i != held => {
                         times_s.iter().map(|t| flow.at(measured, *t)).collect()
