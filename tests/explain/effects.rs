@@ -62,6 +62,7 @@ fn subject(id: &str) -> (&'static str, &'static str) {
         "X1" => ("three-houses", "sf1.heat_exchanger"),
         "G4" | "G6" => ("heat-pumps", "h3.heat_pump"),
         "G1" | "G2" | "G3" => ("two-pipe", "sf1.chp"),
+        "G7" => ("two-pipe", "sf1.boiler"),
         _ if id.starts_with('T') => ("two-pipe", "sf1.storage"),
         _ => ("three-houses", "sf1-sf2.hot"),
     }
@@ -82,6 +83,7 @@ fn neutral(id: &str) -> Value {
         "G2" => json!({ "factor_20": 1.0, "factor_40": 1.0, "factor_60": 1.0 }),
         "G3" => json!({ "time_factor": 1.0, "energy_j": 0.0 }),
         "G4" => json!({ "heat_w": 0.0 }),
+        "G7" => json!({ "capacity_j_k": 0.0, "conductance_w_k": 100.0 }),
         "H3" | "T1" | "T2" | "G1" | "G6" | "X1" => json!({ "factor": 1.0 }),
         "P2" | "P5" | "P10" => json!({ "factor": 1.0 }),
         "P3" => json!({ "difference_k": 0.0, "lag_s": 0.0 }),

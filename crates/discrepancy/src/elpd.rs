@@ -79,6 +79,7 @@ mod tests {
             at: vec![at],
             readings: vec![at; 4],
             e: DVector::from_iterator(4, y.iter().map(|y| y - at)),
+            weight: DVector::from_element(4, 1.0),
             log_evidence: 0.0,
             covariance: DMatrix::from_element(1, 1, 0.2),
             sensitivity: DMatrix::from_element(4, 1, 1.0),

@@ -11,7 +11,7 @@ use crate::profile::Profile;
 use crate::sanity;
 use crate::search::{Search, Settled};
 use crate::split::{SplitFile, Use, split};
-use crate::uncertainty::uncertainties;
+use crate::uncertainty::{Uncertainties, uncertainties};
 use crate::unknown::{Estimate, Target, Unknown};
 use serde::Serialize;
 use std::time::Instant;
@@ -190,7 +190,7 @@ pub fn explain(
             problems => return Ok(data_problem(problems)),
         },
     };
-    let sigma = uncertainties(experiment, &before);
+    let Uncertainties { sigma, known } = uncertainties(experiment, &before);
     watch.lap("uncertainty");
     let problems = sanity::beside(experiment, &before, &sigma);
     watch.lap("sanity");
@@ -203,7 +203,7 @@ pub fn explain(
     let all = candidates(experiment);
     // What was fitted foretells what chooses: both together weigh the evidence. What is shown stays untouched.
     let fitted = (0..uses.len()).filter(|&i| uses[i].is_some_and(|u| u != Use::Show)).collect();
-    let likelihood = Likelihood::new(sigma, fitted);
+    let likelihood = Likelihood { known, ..Likelihood::new(sigma, fitted) };
     let sigma = likelihood.sigma.clone();
     let validated = of(Use::Validate);
     let mut search = Search::new(experiment, &all, tolerances(experiment), likelihood, validated);
@@ -261,7 +261,7 @@ pub fn compare(
 ) -> Result<Vec<Gap>, ExplainError> {
     let uses = split(experiment, split_file)?;
     let before = experiment.readings(&[], &[])?;
-    let sigma = uncertainties(experiment, &before);
+    let sigma = uncertainties(experiment, &before).sigma;
     Ok(gaps(experiment, &uses, &sigma, &before, &before, &before))
 }
 

@@ -14,7 +14,8 @@
 use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::{Experiment, Simulated};
-use crate::noise::{Gain, Noise, Residual, scale_beside, scaled, whitened};
+use crate::noise::{Gain, Noise, Predicted, Residual, Tails, scale_beside, whitened};
+use crate::significance::squares;
 use crate::unknown::{Estimate, Target, Unknown};
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
@@ -38,6 +39,8 @@ pub struct Likelihood {
     pub sigma: Vec<f64>,
     /// The same as it was predicted.
     pub predicted: Vec<f64>,
+    /// Of it what is known well.
+    pub known: Vec<f64>,
     /// The samples that are fitted.
     pub fitted: Vec<usize>,
     /// What a nearly right model leaves behind, by sample; empty: every sample is new.
@@ -51,8 +54,9 @@ pub struct Likelihood {
 impl Likelihood {
     /// To these samples, every one new.
     pub fn new(sigma: Vec<f64>, fitted: Vec<usize>) -> Self {
-        let (predicted, filter, noises) = (sigma.clone(), Vec::new(), HashMap::new());
-        Self { sigma, predicted, fitted, filter, noises, temperature: 1.0 }
+        let (predicted, known) = (sigma.clone(), sigma.clone());
+        let (filter, noises) = (Vec::new(), HashMap::new());
+        Self { sigma, predicted, known, fitted, filter, noises, temperature: 1.0 }
     }
 
     /// Residuals over sigma of all samples.
@@ -61,45 +65,50 @@ impl Likelihood {
         samples.map(|((sample, y), sigma)| (sample.value - y) / sigma).collect()
     }
 
-    /// Root mean square of the residuals over sigma of some samples.
+    /// Root mean square of the residuals over sigma of some samples, with what lies far off alone counted less ([`squares`]).
     pub fn rms(&self, experiment: &Experiment, readings: &[f64], samples: &[usize]) -> f64 {
-        let square =
-            |&i: &usize| ((experiment.samples[i].value - readings[i]) / self.sigma[i]).powi(2);
-        (samples.iter().map(square).sum::<f64>() / samples.len().max(1) as f64).sqrt()
+        let group = |i: usize| (experiment.samples[i].run, experiment.samples[i].sensor);
+        let z = |&i: &usize| (experiment.samples[i].value - readings[i]) / self.sigma[i];
+        let of_group = |own: &[usize]| -> f64 {
+            squares(&own.iter().map(z).collect::<Vec<f64>>()).iter().sum()
+        };
+        let groups = samples.chunk_by(|&i, &j| group(i) == group(j));
+        (groups.map(of_group).sum::<f64>() / samples.len().max(1) as f64).sqrt()
     }
 
     /// Residuals over sigma, or their sensitivities, of all fitted samples, whitened.
     pub fn whitened(&self, z: impl Fn(usize) -> f64) -> DVector<f64> {
-        let cold = 1.0 / self.temperature.sqrt();
         let values = self.fitted.iter().map(|&i| z(i));
         if self.filter.is_empty() {
-            return DVector::from_iterator(self.fitted.len(), values.map(|z| cold * z));
+            return DVector::from_iterator(self.fitted.len(), values);
         }
         let values = self.fitted.iter().map(|&i| z(i) * self.sigma[i]);
-        let new = whitened(&self.filter, values).map(|e| cold * e);
-        DVector::from_iterator(self.fitted.len(), new)
+        DVector::from_iterator(self.fitted.len(), whitened(&self.filter, values))
     }
 
-    /// Scales what is predicted beside the noise of each sensor by what these readings leave behind. Not in a house: what is predicted there are
-    /// bounds of a few switches and of the layers of a storage, and what they leave in quiet hours says nothing of them.
+    /// Whitened residuals as their squares count, and the slopes of these by the residuals.
+    pub fn counted(&self, e: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let cold = 1.0 / self.temperature.sqrt();
+        let tails = |k: usize| self.filter.get(k).map_or(Tails::Normal, |gain| gain.tails);
+        let both = e.iter().enumerate().map(|(k, &e)| tails(k).counted(e));
+        let (values, slopes): (Vec<f64>, Vec<f64>) =
+            both.map(|(y, s)| (cold * y, cold * s)).unzip();
+        (DVector::from_vec(values), DVector::from_vec(slopes))
+    }
+
+    /// Scales what is predicted of each sensor beside what is known well by what these readings leave behind.
     pub fn rescale(&mut self, experiment: &Experiment, readings: &[f64]) {
-        if !experiment.model.circuits.is_empty() {
-            return;
-        }
         for sensor in 0..experiment.sensors.sensor.len() {
-            let residual = |&i: &usize| {
-                let sample = &experiment.samples[i];
-                let (value, sigma) = (sample.value - readings[i], self.predicted[i]);
-                Residual { time_s: sample.time_s, value, sigma }
+            let own = |i: &usize| experiment.samples[*i].sensor == sensor;
+            let of = |i: usize| Predicted {
+                value: experiment.samples[i].value - readings[i],
+                sigma: self.predicted[i],
+                known: self.known[i],
             };
-            let own = |i: &&usize| experiment.samples[**i].sensor == sensor;
-            let residuals: Vec<Residual> = self.fitted.iter().filter(own).map(residual).collect();
-            let noise = experiment.accuracy[sensor].noise;
-            let scale = scale_beside(&residuals, noise);
-            for (i, sample) in experiment.samples.iter().enumerate() {
-                if sample.sensor == sensor {
-                    self.sigma[i] = scaled(self.predicted[i], noise, scale);
-                }
+            let fitted = self.fitted.iter().copied().filter(own);
+            let scale = scale_beside(&fitted.map(of).collect::<Vec<_>>());
+            for i in (0..experiment.samples.len()).filter(own) {
+                self.sigma[i] = of(i).scaled(scale);
             }
         }
     }
@@ -138,8 +147,10 @@ pub struct Fit {
     pub at: Vec<f64>,
     /// Readings there, all samples.
     pub readings: Vec<f64>,
-    /// Whitened residuals of the fitted samples.
+    /// Whitened residuals of the fitted samples, as they count.
     pub e: DVector<f64>,
+    /// Their slopes by the whitened residuals.
+    pub weight: DVector<f64>,
     /// Logarithm of the evidence, but for a constant.
     pub log_evidence: f64,
     /// Covariance of the coordinates.
@@ -197,7 +208,20 @@ struct Point {
     readings: Vec<f64>,
     /// Whitened residuals.
     e: DVector<f64>,
+    /// As they count, with their slopes.
+    counted: (DVector<f64>, DVector<f64>),
     objective: f64,
+}
+
+impl Point {
+    /// Sensitivities of what counts, from those of the whitened readings.
+    fn weighted(&self, sensitivity: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut weighted = sensitivity.clone();
+        for mut column in weighted.column_iter_mut() {
+            column.component_mul_assign(&self.counted.1);
+        }
+        weighted
+    }
 }
 
 struct Problem<'a> {
@@ -238,8 +262,9 @@ pub fn fit(
     // What the steps have gained since the sensitivities were simulated.
     let mut since = if fresh { 0.0 } else { f64::INFINITY };
     for _ in 0..MAX_STEPS {
-        let gradient = sensitivity.tr_mul(&here.e) - problem.prior_slope(&at);
-        let hessian = curvature(&sensitivity, unknowns);
+        let weighted = here.weighted(&sensitivity);
+        let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
+        let hessian = curvature(&weighted, unknowns);
         let mut gained = 0.0;
         for _ in 0..6 {
             let mut damped = hessian.clone();
@@ -292,9 +317,9 @@ pub fn fit(
         problem.differences(&at, &here, renewed, &mut slopes)?;
         problem.columns(&slopes, renewed, &mut sensitivity);
         (damping, fresh, since) = (1e-3, true, 0.0);
-        let gradient = sensitivity.tr_mul(&here.e) - problem.prior_slope(&at);
-        let step =
-            curvature(&sensitivity, unknowns).cholesky().map(|factor| factor.solve(&gradient));
+        let weighted = here.weighted(&sensitivity);
+        let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
+        let step = curvature(&weighted, unknowns).cholesky().map(|factor| factor.solve(&gradient));
         // What a step with the true sensitivities would still gain.
         if step.is_none_or(|step| 0.5 * step.dot(&gradient) < ENOUGH) {
             break;
@@ -304,6 +329,7 @@ pub fn fit(
         problem.differences(&at, &here, renewed, &mut slopes)?;
     }
     problem.columns(&slopes, &all, &mut sensitivity);
+    let sensitivity = here.weighted(&sensitivity);
     let hessian = curvature(&sensitivity, unknowns);
     let covariance = hessian
         .clone()
@@ -315,8 +341,8 @@ pub fn fit(
         .cholesky()
         .map_or(0.0, |factor| 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
     let log_evidence = -0.5 * here.objective - 0.5 * log_det;
-    let Point { readings, e, simulated, .. } = here;
-    Ok(Fit { at, readings, e, log_evidence, covariance, sensitivity, slopes, simulated })
+    let Point { readings, counted: (e, weight), simulated, .. } = here;
+    Ok(Fit { at, readings, e, weight, log_evidence, covariance, sensitivity, slopes, simulated })
 }
 
 impl Problem<'_> {
@@ -326,8 +352,9 @@ impl Problem<'_> {
         let z = self.likelihood.z(self.experiment, &readings);
         let e = self.likelihood.whitened(|i| z[i]);
         let prior = self.unknowns.iter().zip(at).map(|(u, x)| ((x - u.mean) / u.sd).powi(2));
-        let objective = e.norm_squared() + prior.sum::<f64>();
-        Ok(Point { simulated, readings, e, objective })
+        let counted = self.likelihood.counted(&e);
+        let objective = counted.0.norm_squared() + prior.sum::<f64>();
+        Ok(Point { simulated, readings, e, counted, objective })
     }
 
     fn prior_slope(&self, at: &[f64]) -> DVector<f64> {

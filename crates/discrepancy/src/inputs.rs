@@ -7,11 +7,13 @@
 //!
 //! **Validity** a flow that never reads below zero stays there; what a reading cannot have been (a speed of -0.0001) is the end of
 //! the range. A command is off within five standard deviations of the lower end of its range; it is switched in the middle between two
-//! readings, as early as late.
+//! readings, as early as late. So is a flow that only runs forward, unless one of the readings was taken on its way: as much flows as
+//! with a straight line, and a pause is neither too short nor too long.
 
 use crate::data::Track;
 use crate::response::Response;
 use crate::sensors::Sensor;
+use crate::uncertainty::on_its_way;
 use anergy_core::clock::Time;
 use anergy_simulation::model::{DriverSpec, Place};
 use anergy_simulation::model_file::Interpolation;
@@ -20,6 +22,8 @@ use anergy_simulation::model_file::Interpolation;
 const APART: f64 = 2.5;
 /// A command is off so many standard deviations of its noise above the lower end of its range.
 const OFF: f64 = 5.0;
+/// A flow meter with an offset reads it as exactly as so many standard deviations of its noise.
+const STILL: f64 = 3.0;
 
 /// A measured input.
 pub(crate) struct Input<'a> {
@@ -40,8 +44,9 @@ impl Input<'_> {
     pub(crate) fn driver(&self, span_s: (f64, f64), step: Time, rows: usize) -> DriverSpec {
         let (sensor, response) = (self.sensor, self.response);
         let is_flow = ["kg_s", "m3_s"].contains(&sensor.si().as_str());
+        let forward = is_flow && self.track.value.iter().all(|y| *y >= 0.0);
         let mut ahead = before_lag(self.track, sensor.lag_s + response.lag_s);
-        if is_flow && self.track.value.iter().all(|y| *y >= 0.0) {
+        if forward {
             ahead.value.iter_mut().for_each(|y| *y = y.max(0.0));
         }
         let smooth = (sensor.si() == "k").then(|| ahead.usual_bend());
@@ -50,12 +55,17 @@ impl Input<'_> {
             let reading = if let Some(usually) = smooth {
                 ahead.smooth_at(time_s, usually)
             } else if sensor.si() == "1" {
-                self.command(&ahead, time_s)
+                let off = self.range.0 + OFF * self.noise;
+                switched(&ahead, time_s, self.range.0, |y| y < off, |_| false)
+            } else if forward {
+                let still = self.still(response.offset(time_s, span_s));
+                let on_its_way = |i| on_its_way(&self.track.value, i);
+                switched(&ahead, time_s, 0.0, |y| y <= still, on_its_way)
             } else {
                 ahead.at(time_s)
             };
             // A flow meter that reads nothing has cut off a flow too small for it.
-            if is_flow && self.track.at(time_s) == 0.0 {
+            if is_flow && (self.track.at(time_s) == 0.0 || forward && reading == 0.0) {
                 0.0
             } else {
                 response.before(reading, time_s, span_s).clamp(self.range.0, self.range.1)
@@ -72,17 +82,30 @@ impl Input<'_> {
         }
     }
 
-    /// A command at a time: linear, but at one moment from off to on.
-    fn command(&self, track: &Track, time_s: f64) -> f64 {
-        let (t, y) = (&track.time_s, &track.value);
-        let i = t.partition_point(|t| *t <= time_s);
-        let is_off = |y: f64| y < self.range.0 + OFF * self.noise;
-        let reading = track.at(time_s);
-        if i > 0 && i < t.len() && is_off(y[i - 1]) != is_off(y[i]) {
-            return if 2.0 * time_s < t[i - 1] + t[i] { y[i - 1] } else { y[i] };
-        }
-        if is_off(reading) { self.range.0 } else { reading }
+    /// What a meter of forward flow reads at most while nothing flows: nothing, or its offset as far as noise blurs it.
+    fn still(&self, offset: f64) -> f64 {
+        offset.max(0.0) + (STILL * self.noise).min(offset.max(0.0))
     }
+}
+
+/// What is off or on at a time: linear, but from off to on at one moment in the middle between two readings, unless it was read
+/// `on_its_way`; `zero` where it is off.
+fn switched(
+    track: &Track,
+    time_s: f64,
+    zero: f64,
+    is_off: impl Fn(f64) -> bool,
+    on_its_way: impl Fn(usize) -> bool,
+) -> f64 {
+    let (t, y) = (&track.time_s, &track.value);
+    let i = t.partition_point(|t| *t <= time_s);
+    let reading = track.at(time_s);
+    let held = if i > 0 && i < t.len() && is_off(y[i - 1]) != is_off(y[i]) && !on_its_way(i) {
+        if 2.0 * time_s < t[i - 1] + t[i] { y[i - 1] } else { y[i] }
+    } else {
+        reading
+    };
+    if is_off(held) { zero } else { held }
 }
 
 /// The quantity in front of a first-order lag.
@@ -173,6 +196,39 @@ mod tests {
         // From off to on between 4 and 5 s: at one moment.
         let halves = input.driver((0.0, 9.0), Time::from_s(0.25).unwrap(), 36);
         assert!(halves.values.iter().all(|v| [0.0, 1.0].contains(v)), "{:?}", halves.values);
+    }
+
+    #[test]
+    fn a_pause_of_a_flow_is_as_long_as_its_readings_say() {
+        use crate::unknown::Target;
+        let text = "[[sensor]]\ncolumn = \"m\"\nsignal = \"a.m_flow_kg_s\"\nunit = \"kg_s\"\nrole = \"input\"\n\
+                    [[sensor]]\ncolumn = \"T\"\nsignal = \"b.t_k\"\nunit = \"degC\"\nrole = \"compare\"\n";
+        let file = SensorFile::from_toml(text).unwrap();
+        let range = (f64::NEG_INFINITY, f64::INFINITY);
+        // A reading every 10 s, none while nothing flows: at 30, 40 and 50 s.
+        let every_10 = |zero: f64| Track {
+            time_s: (0..10).map(|k| 10.0 * f64::from(k)).collect(),
+            value: (0..10).map(|k| if (3..6).contains(&k) { zero } else { 1.0 + zero }).collect(),
+        };
+        let still = |track: &Track, response: &Response| {
+            let input = Input { sensor: &file.sensor[0], track, response, range, noise: 0.01 };
+            let driver = input.driver((0.0, 90.0), Time::from_s(1.0).unwrap(), 90);
+            driver.values.iter().filter(|m| **m == 0.0).count()
+        };
+        // From 25 to 55 s.
+        assert_eq!(still(&every_10(0.0), &Response::default()), 30);
+        // The same with an offset of 0.05, whose noise of 0.01 is none of the water; 0.03 beside it is.
+        let mut response = Response::default();
+        response.take(&Target::Bias(0), 0.05);
+        let mut noisy = every_10(0.05);
+        noisy.value[4] = 0.07;
+        assert_eq!(still(&noisy, &response), 30);
+        noisy.value[4] = 0.1;
+        assert!(still(&noisy, &response) < 25);
+        // Read on its way down it stops where it was read: from 30 to 55 s.
+        let mut ramp = every_10(0.0);
+        ramp.value[2] = 0.5;
+        assert_eq!(still(&ramp, &Response::default()), 25);
     }
 
     #[test]

@@ -55,7 +55,8 @@ impl Response {
         (reading - self.offset(time_s, span_s)) / self.gain
     }
 
-    fn offset(&self, time_s: f64, span_s: (f64, f64)) -> f64 {
+    /// What it reads of nothing.
+    pub(crate) fn offset(&self, time_s: f64, span_s: (f64, f64)) -> f64 {
         let share = ((time_s - span_s.0) / (span_s.1 - span_s.0).max(1e-9)).clamp(0.0, 1.0);
         let stepped = ((share - self.step_share) / STEP_TAKES + 0.5).clamp(0.0, 1.0);
         self.bias + self.drift * share + self.step * stepped

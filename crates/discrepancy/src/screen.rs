@@ -149,7 +149,7 @@ impl Without<'_> {
             self.experiment.observed(&self.fit.simulated, &unknowns, &at)
         };
         let z = |i: usize| (readings[i] - self.fit.readings[i]) / self.likelihood.sigma[i];
-        Some(self.likelihood.whitened(z))
+        Some(self.likelihood.whitened(z).component_mul(&self.fit.weight))
     }
 }
 

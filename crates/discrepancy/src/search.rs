@@ -242,13 +242,7 @@ impl<'a> Search<'a> {
         watch: &mut Stopwatch,
     ) -> Result<Option<Round>, ExplainError> {
         let open: Vec<usize> = (0..self.all.len()).filter(|i| !self.taken.contains(i)).collect();
-        let without = Without {
-            experiment: self.experiment,
-            unknowns: &self.base,
-            likelihood: &self.likelihood,
-            fit: &quick,
-        };
-        let looked = without.screen(self.all, &open);
+        let looked = self.screen(&quick, &open);
         watch.lap("screen");
         let could = looked.first().map_or(0.0, |s| s.gain);
         let far = |(u, x): (&Unknown, &f64)| ((x - u.mean) / u.sd).powi(2);
@@ -256,10 +250,12 @@ impl<'a> Search<'a> {
         if could < WINS && strain < STRAINS && null_z < UNEXPLAINED {
             return Ok(None);
         }
-        let starts: Vec<Start> = kept(&looked, MOST_COMPARED)
-            .into_iter()
-            .map(|s| Start { candidates: vec![s.candidate], at: vec![s.start], earlier: None })
-            .collect();
+        let start = |s: &Screened| Start {
+            candidates: vec![s.candidate],
+            at: vec![s.start],
+            earlier: None,
+        };
+        let starts: Vec<Start> = kept(&looked, MOST_COMPARED).into_iter().map(start).collect();
         // At first every sample counts in full, so that each candidate shows how well it can fit.
         let mut rough = self.common().fits(&starts, Care::Quick);
         watch.lap("fits");
@@ -271,7 +267,13 @@ impl<'a> Search<'a> {
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
-        let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
+        let mut again: Vec<Start> = rough.into_iter().map(Start::again).collect();
+        // What a few samples far off had hidden.
+        let seen = self.screen(&null, &open);
+        let known = |s: &&Screened| again.iter().any(|start| start.candidates == [s.candidate]);
+        let new: Vec<Start> =
+            kept(&seen, MOST_COMPARED).into_iter().filter(|s| !known(s)).map(start).collect();
+        again.extend(new);
         let mut tried = self.common().fits(&again, Care::Quick);
         tried.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         // Those that may win, or belong to its class, with all sensitivities renewed.
@@ -286,6 +288,11 @@ impl<'a> Search<'a> {
         let null_z = self.z(&null.readings);
         let findings = self.ranked(&null, &mut tried);
         Ok(Some(Round { null_z, tried, findings, ..none }))
+    }
+
+    fn screen(&self, fit: &Fit, open: &[usize]) -> Vec<Screened> {
+        let (experiment, unknowns, likelihood) = (self.experiment, &self.base, &self.likelihood);
+        Without { experiment, unknowns, likelihood, fit }.screen(self.all, open)
     }
 
     /// The fit without an effect once more, from the tolerances that the best one has found: where it was only stuck, the effect
@@ -310,7 +317,7 @@ impl<'a> Search<'a> {
     fn temperature(&self, null: &[f64], best: &[f64]) -> f64 {
         let square = |readings: &[f64]| {
             let z = self.likelihood.z(self.experiment, readings);
-            self.likelihood.whitened(|i| z[i]).norm_squared()
+            self.likelihood.counted(&self.likelihood.whitened(|i| z[i])).0.norm_squared()
         };
         let gain = 0.5 * (square(null) - square(best)).max(0.0);
         TEMPERATURE.max(LOUD * gain.sqrt())

@@ -20,6 +20,8 @@ const DRAWS: usize = 2000;
 const CHANCE: f64 = 0.01;
 /// Fewer samples say nothing.
 const FEWEST: usize = 8;
+/// A residual that lies further off than those beside it counts as so many standard deviations.
+const ALONE: f64 = 3.0;
 
 /// What a sensor says about the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -109,12 +111,24 @@ pub struct Tested {
     pub mean: (f64, f64, f64),
 }
 
+/// Squares of residuals over sigma in the order of time. One that lies far off alone, as a switch between two readings may leave it,
+/// counts no more than those beside it, or than [`ALONE`].
+pub fn squares(z: &[f64]) -> Vec<f64> {
+    let size = |k: Option<usize>| k.and_then(|k| z.get(k)).map_or(0.0, |z| z.abs());
+    let of = |(k, z): (usize, &f64)| {
+        let beside = size(k.checked_sub(1)).max(size(Some(k + 1)));
+        z.abs().min(beside.max(ALONE)).powi(2)
+    };
+    z.iter().enumerate().map(of).collect()
+}
+
 /// Tests residuals (SI) with their standard deviations.
 pub fn test(residuals: &[f64], sigma: &[f64]) -> Option<Tested> {
     if residuals.len() < FEWEST {
         return None;
     }
-    let squares: Vec<f64> = residuals.iter().zip(sigma).map(|(r, s)| (r / s).powi(2)).collect();
+    let z: Vec<f64> = residuals.iter().zip(sigma).map(|(r, s)| r / s).collect();
+    let squares = squares(&z);
     let z = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     let means = drawn_means(&squares, 7);
     let below = means.partition_point(|mean| *mean <= DIFFERS * DIFFERS);
@@ -183,6 +197,12 @@ mod tests {
         assert!((width(&white) - 0.088).abs() < 0.015, "{}", width(&white));
         assert!((0.3..0.9).contains(&width(&slow)), "{}", width(&slow));
         assert!(block_length(&slow) > 10.0 && block_length(&white) < 5.0);
+    }
+
+    #[test]
+    fn one_alone_counts_no_more_than_three() {
+        assert_eq!(squares(&[0.5, -38.0, 1.0, 4.0, 6.0, 2.0]), [0.25, 9.0, 1.0, 16.0, 16.0, 4.0]);
+        assert_eq!(squares(&[-5.0]), [9.0]);
     }
 
     #[test]

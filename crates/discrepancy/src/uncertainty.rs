@@ -15,7 +15,7 @@
 
 use crate::cores::on_all_cores;
 use crate::data::Track;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, Sample};
 use crate::grid;
 use crate::sensors::{Role, Sensor};
 use crate::unknown::{Target, Unknown};
@@ -53,8 +53,17 @@ pub(crate) fn jitter_s(track: &Track) -> f64 {
     (interval_s(track) / 12.0_f64.sqrt()).clamp(JITTER_S.0, JITTER_S.1)
 }
 
-/// Standard deviations of all samples, SI; `readings` are those of the model as it is.
-pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
+/// Standard deviations of all samples, SI.
+#[derive(Debug, Clone)]
+pub struct Uncertainties {
+    /// In all.
+    pub sigma: Vec<f64>,
+    /// Of it what is known well: the noise of the sensor and the moments of switches. (The rest was predicted from a few simulations.)
+    pub known: Vec<f64>,
+}
+
+/// Standard deviations of all samples; `readings` are those of the model as it is.
+pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Uncertainties {
     let starts: Vec<(Unknown, f64)> = (0..experiment.runs.len())
         .filter_map(|run| {
             let first = experiment.first(run)?;
@@ -85,19 +94,20 @@ pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
     let away = |other: &Option<Vec<f64>>, i: usize| {
         other.as_ref().map_or(0.0, |other| other[i] - readings[i])
     };
-    let square = |i: usize| {
+    // The moment of a switch: equally distributed between its earliest and its latest.
+    let switched = |i: usize| away(&early, i).powi(2).max(away(&late, i).powi(2)) / 3.0;
+    let drawn = |i: usize| {
         let squares = draws.iter().map(|draw| (draw[i] - readings[i]).powi(2));
-        let drawn = squares.sum::<f64>() / draws.len().max(1) as f64;
-        // Few draws may miss the moment of a switch: equally distributed between its earliest and its latest.
-        let switched = away(&early, i).powi(2).max(away(&late, i).powi(2)) / 3.0;
-        drawn.max(switched)
+        squares.sum::<f64>() / draws.len().max(1) as f64
     };
-    let squares: Vec<f64> = (0..readings.len()).map(square).collect();
+    let switched: Vec<f64> = (0..readings.len()).map(switched).collect();
+    // Few draws may miss it.
+    let squares: Vec<f64> = (0..readings.len()).map(|i| drawn(i).max(switched[i])).collect();
     let samples = &experiment.samples;
     let unknown_mixing = grid::unknown_share(experiment);
     let jitters: Vec<Vec<f64>> =
         experiment.runs.iter().map(|run| run.tracks.iter().map(jitter_s).collect()).collect();
-    let sigma = samples.iter().enumerate().map(|(i, sample)| {
+    let of = |(i, sample): (usize, &Sample)| {
         let group = (sample.run, sample.sensor);
         let same = |j: &usize| samples.get(*j).is_some_and(|s| (s.run, s.sensor) == group);
         let before = i.checked_sub(1).filter(same).unwrap_or(i);
@@ -107,14 +117,17 @@ pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
             if dt_s > 0.0 { (samples[after].value - samples[before].value) / dt_s } else { 0.0 };
         let moved = rate * jitters[sample.run][sample.sensor];
         let beside = (i.saturating_sub(BESIDE)..=i + BESIDE).filter(same);
-        let (sum, count) =
-            beside.fold((0.0, 0.0), |(sum, count), j| (sum + squares[j], count + 1.0));
+        let (sum, of_switches, count) = beside.fold((0.0, 0.0, 0.0), |(sum, of, count), j| {
+            (sum + squares[j], of + switched[j], count + 1.0)
+        });
         let noise = experiment.accuracy[sample.sensor].noise;
         let layers = unknown_mixing * grid::WHOLE * away(&layers, i);
         let rest = away(&finer, i).powi(2) + away(&start, i).powi(2) + layers * layers;
-        (noise * noise + moved * moved + rest + sum / count).sqrt()
-    });
-    sigma.collect()
+        let all = noise * noise + moved * moved + rest + sum / count;
+        (all.sqrt(), (noise * noise + of_switches / count).sqrt())
+    };
+    let (sigma, known) = samples.iter().enumerate().map(of).unzip();
+    Uncertainties { sigma, known }
 }
 
 /// The experiment with inputs as they might have been.
@@ -205,6 +218,11 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
     let switches = |i: usize| {
         kind == Kind::Command && (i.saturating_sub(1)..=(i + 1).min(y.len() - 1)).any(is_off)
     };
+    // Whether it is off at the next reading, from one moment to the other.
+    let stops = |i: usize| {
+        let next = (i + 1).min(y.len() - 1);
+        is_off(next) && (kind == Kind::Command || !on_its_way(y, next))
+    };
     // How far a reading lies from the straight line between its neighbours: so much may lie between two readings.
     let bent = |i: usize| {
         let inner = i > 0 && i + 1 < t.len() && !switches(i);
@@ -233,7 +251,7 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
                 drawn.time_s.push(t[i] + share * gap_s);
                 drawn.value.push(if is_flow && forward { bridge.max(0.0) } else { bridge });
             }
-        } else if after > i && !off && !(switches(i) && is_off(after)) {
+        } else if after > i && !off && !stops(i) {
             let middle_s = 0.5 * (t[i] + t[after]);
             let (middle, share) = if kind == Kind::Temperature {
                 (track.smooth_at(middle_s, usually), BENT.1)
@@ -249,7 +267,7 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
 }
 
 /// Whether a reading, or one beside it, lies between two levels: the change takes longer than an interval, and its moment is read.
-fn on_its_way(y: &[f64], i: usize) -> bool {
+pub(crate) fn on_its_way(y: &[f64], i: usize) -> bool {
     let passes = |k: usize| {
         let (Some(before), Some(after)) = (k.checked_sub(1).map(|k| y[k]), y.get(k + 1)) else {
             return false;

@@ -13,6 +13,7 @@ mod inlet_jet;
 mod insulation;
 mod leak;
 mod length;
+mod metal;
 mod node_leak;
 mod parasitic_flow;
 mod part_load;
@@ -53,6 +54,7 @@ anergy_core::registry! {
         Start("G3", start::Start, start::Start),
         Defrosting("G4", defrosting::Defrosting, defrosting::Defrosting),
         Auxiliary("G6", auxiliary::Auxiliary, auxiliary::Auxiliary),
+        Metal("G7", metal::Metal, metal::Metal),
         Fouling("X1", fouling::Fouling, fouling::Fouling),
         ThreeWayLeak("H8", three_way_leak::ThreeWayLeak, three_way_leak::ThreeWayLeak),
         NodeLeak("P11", node_leak::NodeLeak, node_leak::NodeLeak),

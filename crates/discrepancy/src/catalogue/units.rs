@@ -4,7 +4,8 @@ use super::tolerance::Known;
 use super::{Candidate, effect_target, has, sensed};
 use crate::experiment::Experiment;
 use crate::sensors::Sensor;
-use crate::unknown::Unknown;
+use crate::unknown::{Target, Unknown};
+use serde_json::Value;
 
 /// A depth of water between this share of a layer and a whole one is not told from the layer.
 const LEAST_LAYER: f64 = 1e-3;
@@ -16,6 +17,16 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let known = Known::of(experiment);
     for unit in &experiment.model.units {
         let (component, kind) = (unit.id.as_str(), unit.params.kind());
+        if kind == BOILER && warm {
+            let [capacity, conductance] = metal(&unit.params.to_value(), &known);
+            for (field, (middle, sd)) in
+                [("capacity_j_k", capacity), ("conductance_w_k", conductance)]
+            {
+                if !has(experiment, "G7", component) {
+                    all.push(around(effect_target("G7", component, field), middle, sd));
+                }
+            }
+        }
         let mut add = |id: &'static str, field: &'static str, sd: f64| {
             if !has(experiment, id, component) {
                 let factor = Unknown::plain(effect_target(id, component, field), 0.0, sd);
@@ -38,13 +49,32 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     }
 }
 
-/// Whether a sensor measures the temperature of the water that leaves a generator.
+/// A positive quantity around its middle, by its logarithm.
+fn around(target: Target, middle: f64, sd: f64) -> Unknown {
+    Unknown { logarithmic: true, ..Unknown::plain(target, middle.ln(), sd) }
+}
+
+/// Metal of a boiler that its model does not have: capacity, J/K, and conductance to the water, W/K, and the standard deviations of
+/// their logarithms. As much as follows the return behind the time that is tolerated at a flow for 20 K.
+fn metal(boiler: &Value, known: &Known) -> [(f64, f64); 2] {
+    let nominal_w = boiler["nominal_w"].as_f64().unwrap_or(MEASURED_W);
+    let conductance_w_k = boiler["metal_conductance_w_k"].as_f64().unwrap_or(100.0);
+    let capacity_j_k = known.outlet_lag_s * nominal_w / SPREAD_K;
+    [(capacity_j_k, 1.0), (conductance_w_k * nominal_w / MEASURED_W, 0.7)]
+}
+
+/// Difference of supply and return for which a flow is made, K.
+const SPREAD_K: f64 = 20.0;
+/// Nominal heat of the boiler whose data are the default ones, W.
+const MEASURED_W: f64 = 14_000.0;
+
+/// Whether a sensor measures the temperature of the water that leaves a generator of whose metal nothing else is known.
 pub(super) fn at_outlet(experiment: &Experiment, sensor: &Sensor) -> bool {
     let mut units = experiment.model.units.iter();
     let own = units.find(|unit| {
         sensor.signal.strip_prefix(unit.id.as_str()).is_some_and(|rest| rest == ".t_supply_k")
     });
-    own.is_some_and(|unit| is_generator(unit.params.kind()))
+    own.is_some_and(|unit| is_generator(unit.params.kind()) && unit.params.kind() != BOILER)
 }
 
 fn is_generator(kind: &str) -> bool {
@@ -65,6 +95,19 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
         }
         if power && is_generator(kind) {
             of_generator(id, &known, all);
+        }
+        if kind == BOILER && warm {
+            let [(middle, sd), (conductance_w_k, _)] = metal(&unit.params.to_value(), &known);
+            let more = Candidate::effect(
+                "G7",
+                id,
+                "metal of the generator",
+                ("capacity_j_k", "J/K"),
+                |target| Unknown::between(target, 2000.0, 300_000.0),
+                "starts after pauses of different length and with another return temperature",
+            );
+            let conductance = |target| around(target, conductance_w_k, 0.7);
+            all.push(more.tolerated(middle.ln(), sd).with("conductance_w_k", conductance));
         }
         if kind == AIR_SOURCE {
             if power {
@@ -116,7 +159,8 @@ const PUMPED: &[&str] = &[
     "booster_heat_pump",
 ];
 /// Kinds that burn gas.
-const BURNERS: &[&str] = &["condensing_boiler", "chp", "stirling_chp"];
+const BURNERS: &[&str] = &[BOILER, "chp", "stirling_chp"];
+const BOILER: &str = "condensing_boiler";
 const AIR_SOURCE: &str = "air_source_heat_pump";
 const AUX: &str = "electricity and heat in steps of the heater";
 

@@ -10,7 +10,7 @@
 //! stops where its smallest load overshoots by `BAND_K`, and starts again where it no longer does. Return and
 //! supply above their limits stop the unit; it may start again when both are below by the restart difference.
 //!
-//! **Assumptions** no water content, unless an engine is given one (`combustion/engine.rs`). Where the water takes less heat than planned (less flow, a supply that would be too hot),
+//! **Assumptions** no content, unless an engine is given one (`combustion/engine.rs`), or a boiler its metal (`combustion/metal.rs`). Where the water takes less heat than planned (less flow, a supply that would be too hot),
 //! fuel and electricity shrink in proportion. **Validity** that of each map, whose arguments are clamped. **Numerics** map and limits take the
 //! return temperature of the step before; what the water got is booked.
 //!
@@ -22,6 +22,7 @@ mod engine;
 mod flow;
 mod load;
 pub mod map;
+mod metal;
 pub mod stirling;
 
 use crate::burner::{Burner, BurnerState, Command, Means, Steady};
@@ -36,6 +37,7 @@ use engine::EngineContent;
 use flow::{FlowRule, FlowWish};
 pub use flow::{GeneratorCommand, GeneratorFlow};
 use map::SteadyMap;
+use metal::Metal;
 
 /// The set supply may be missed by this before a unit that holds it stops, K.
 const BAND_K: f64 = 5.0;
@@ -66,6 +68,8 @@ pub struct Combustion {
     limits: Limits,
     /// The content of an engine, where it has one.
     engine: Option<EngineContent>,
+    /// The metal of a boiler, where it counts; never beside an engine.
+    metal: Option<Metal>,
     /// How much better it is than its map.
     factor: EfficiencyFactor,
     /// Electricity while nothing burns, and while something does, W.
@@ -108,10 +112,12 @@ struct Plan {
     /// Whether the pump of an engine with a content runs.
     pump: bool,
     m_flow_kg_s: f64,
+    /// Heat from the metal into the water, W.
+    metal_w: f64,
 }
 
 impl Plan {
-    /// Heat into the water, W.
+    /// Heat of fuel and electricity, W.
     fn heat_w(&self) -> f64 {
         self.main.heat_w + self.aux.heat_w + self.rod_w
     }
@@ -165,10 +171,27 @@ impl Combustion {
         });
         let capacity_w_k = if pump { self.flow.capacity_w_k(&wish) } else { 0.0 };
         let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
-        Plan { main, aux, rod_w, next_main, next_aux, tripped, overshot, pump, m_flow_kg_s }
+        let metal_w = self.metal.map_or(0.0, |metal| {
+            let passed = state[self.engine_at() + 1];
+            let m_flow_kg_s = if m_flow_kg_s > 0.0 { m_flow_kg_s } else { passed };
+            let capacity_w_k = self.medium.heat_capacity_j_kg_k * m_flow_kg_s.abs();
+            metal.heat_w(state[self.engine_at()], return_k, capacity_w_k, state[STEP_S])
+        });
+        Plan {
+            main,
+            aux,
+            rod_w,
+            next_main,
+            next_aux,
+            tripped,
+            overshot,
+            pump,
+            m_flow_kg_s,
+            metal_w,
+        }
     }
 
-    /// Where the state of the engine begins: behind that of the burners.
+    /// Where the state of the engine, or of the metal, begins: behind that of the burners.
     fn engine_at(&self) -> usize {
         BURNERS + BurnerState::LEN * if self.aux.is_some() { 2 } else { 1 }
     }
@@ -230,6 +253,9 @@ impl ThermalUnit for Combustion {
                 UnitOutput::new("loss_j", "J"),
             ]);
         }
+        if self.metal.is_some() {
+            outputs.push(UnitOutput::state("t_metal_k", "K"));
+        }
         outputs
     }
 
@@ -242,6 +268,9 @@ impl ThermalUnit for Combustion {
         }
         if let Some(engine) = self.engine {
             state.extend([engine.initial_k.unwrap_or(initial_k), 0.0, 0.0]);
+        }
+        if self.metal.is_some() {
+            state.extend([initial_k, 0.0]);
         }
         state
     }
@@ -261,7 +290,7 @@ impl ThermalUnit for Combustion {
             state[RETURN_K] = got.t_in_k;
         }
         let plan = self.plan(signals, state);
-        let (m_flow_kg_s, heat_w) = (plan.m_flow_kg_s, plan.heat_w());
+        let (m_flow_kg_s, heat_w) = (plan.m_flow_kg_s, plan.heat_w() + plan.metal_w);
         // The supply is no hotter where the water arrives warmer than before, and not beyond what stops the unit.
         let outlet = match self.flow {
             _ if self.engine.is_some() => {
@@ -298,7 +327,7 @@ impl ThermalUnit for Combustion {
         // What the water took of what was planned; a content takes it all.
         let planned_w = plan.heat_w();
         let partly = planned_w > 0.0 && self.engine.is_none();
-        let share = if partly { (q_w / planned_w).clamp(0.0, 1.0) } else { 1.0 };
+        let share = if partly { ((q_w - plan.metal_w) / planned_w).clamp(0.0, 1.0) } else { 1.0 };
         let on = plan.main.on.max(plan.aux.on);
         let rod_w = share * plan.rod_w;
         let fuel_w = share * (plan.main.fuel_w + plan.aux.fuel_w);
@@ -352,6 +381,14 @@ impl ThermalUnit for Combustion {
             engine[2] += dt_s * lost_w;
             out[15..].copy_from_slice(&[engine[0], lost_w, engine[2]]);
         }
+        if let Some(metal) = self.metal {
+            let own = &mut state[self.engine_at()..];
+            // What the water took beside the heat of fuel came from the metal.
+            kept_w = if dt_s > 0.0 { share * planned_w - q_w } else { 0.0 };
+            own[0] += dt_s * kept_w / metal.heat_capacity_j_k;
+            own[1] = m_flow_kg_s.abs();
+            out[15] = own[0];
+        }
         Exchange { electric_w, external_w: q_w + kept_w - electric_w }
     }
 
@@ -364,10 +401,9 @@ impl ThermalUnit for Combustion {
     }
 
     fn stored_j(&self, state: &[f64]) -> f64 {
-        let held = |content: EngineContent| {
-            content.heat_capacity_j_k * (state[self.engine_at()] - ZERO_CELSIUS_K)
-        };
-        self.engine.map_or(0.0, held)
+        let capacity_j_k = self.engine.map(|engine| engine.heat_capacity_j_k);
+        let capacity_j_k = capacity_j_k.or(self.metal.map(|metal| metal.heat_capacity_j_k));
+        capacity_j_k.map_or(0.0, |c| c * (state[self.engine_at()] - ZERO_CELSIUS_K))
     }
 
     fn flags(&self) -> &'static [Flag] {

@@ -2,6 +2,7 @@
 
 use super::flow::flow_rule;
 use super::map::{BoilerTable, SteadyMap};
+use super::metal::Metal;
 use super::{Combustion, GeneratorCommand, GeneratorFlow, Limits, Stage};
 use crate::burner::{Burner, TablePoint, WarmUp};
 use crate::efficiency_factor::EfficiencyFactor;
@@ -14,6 +15,9 @@ use serde::{Deserialize, Serialize};
 
 /// Nominal heat of the boiler whose data the fits follow, W.
 pub(super) const MEASURED_W: f64 = 14_000.0;
+
+/// Conductance between metal and water, W/K, assumed.
+const METAL_W_K: f64 = 100.0;
 
 /// A condensing gas boiler as written in a model file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -78,6 +82,10 @@ pub struct CondensingBoilerParams {
     /// The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub part_load_factor: Vec<f64>,
+    /// Heat capacity of metal that takes part beside what start and stop show, J/K; 0 for none.
+    pub metal_capacity_j_k: f64,
+    /// Conductance between this metal and the water, W/K.
+    pub metal_conductance_w_k: f64,
     /// Electricity of control, fan and pump, W.
     pub idle_w: f64,
     /// false: the steady map at once, without start, stop, load changes and least times.
@@ -123,6 +131,8 @@ impl Default for CondensingBoilerParams {
             stop_heat: vec![1.0, 1.0, 0.97, 0.79, 0.47, 0.34, 0.17, 0.10, 0.05, 0.0],
             efficiency_factor: 1.0,
             part_load_factor: Vec::new(),
+            metal_capacity_j_k: 0.0,
+            metal_conductance_w_k: METAL_W_K,
             idle_w: 35.0,
             dynamics: true,
         }
@@ -202,6 +212,7 @@ impl CondensingBoilerParams {
             ("temperature_difference_k", self.temperature_difference_k),
             ("v_flow_m3_s", self.v_flow_m3_s),
             ("v_flow_max_m3_s", self.v_flow_max_m3_s),
+            ("metal_conductance_w_k", self.metal_conductance_w_k),
         ] {
             positive(field, value)?;
         }
@@ -210,6 +221,7 @@ impl CondensingBoilerParams {
             ("restart_difference_k", self.restart_difference_k),
             ("run_min_s", self.run_min_s),
             ("off_min_s", self.off_min_s),
+            ("metal_capacity_j_k", self.metal_capacity_j_k),
             ("idle_w", self.idle_w),
         ] {
             not_negative(field, value)?;
@@ -240,6 +252,7 @@ impl CondensingBoilerParams {
                 restart_k: self.restart_difference_k,
             },
             engine: None,
+            metal: Metal::new(self.metal_capacity_j_k, self.metal_conductance_w_k),
             factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,
             running_w: self.idle_w,

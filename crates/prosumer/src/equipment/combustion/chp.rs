@@ -312,6 +312,7 @@ impl ChpParams {
                 supply_max_k: liquid("supply_max_k", self.supply_max_k)?,
                 restart_k: self.restart_difference_k,
             },
+            metal: None,
             engine,
             factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,

@@ -186,6 +186,7 @@ impl StirlingChpParams {
                 restart_k: self.restart_difference_k,
             },
             engine: None,
+            metal: None,
             factor: EfficiencyFactor::new(self.efficiency_factor, &self.part_load_factor)?,
             idle_w: self.idle_w,
             running_w: 0.0,
