@@ -421,6 +421,13 @@ fn effects_of_units_change_what_they_say() {
     assert_near(&start["start_s"], 990.0);
     assert_near(&start["warm_start_s"], 240.0);
     assert_near(&start["warm_up_w"], 500.0);
+    let boiler = parameters(
+        "two-pipe",
+        "sf1.boiler",
+        "id = \"G7\"\ncapacity_j_k = 8000\nconductance_w_k = 150",
+    );
+    assert_near(&boiler["metal_capacity_j_k"], 8000.0);
+    assert_near(&boiler["metal_conductance_w_k"], 150.0);
     let pump = |effect: &str| parameters("heat-pumps", "h3.heat_pump", effect);
     assert_near(&pump("id = \"G6\"\nfactor = 0.91")["aux_rated_w"], 8190.0);
     let ice = pump("id = \"G4\"\nheat_kw = 4\nafter_s = 1800");
@@ -503,6 +510,7 @@ fn effects_name_what_they_cannot_be_of() {
         ("id = \"H1\"\ncomponent = \"sf1.burner\"\nopening = 1.5", "must lie between 0 and 1"),
         ("id = \"G4\"\ncomponent = \"sf1.chp\"\nheat_w = 1", "there is no air_source_heat_pump"),
         ("id = \"G3\"\ncomponent = \"sf1.boiler\"\nenergy_j = 1", "is of an engine"),
+        ("id = \"G7\"\ncomponent = \"sf1.chp\"\ncapacity_j_k = 1", "boiler"),
         ("id = \"H3\"\ncomponent = \"pipe\"\nfactor = 2", "there is no pump \"pipe\""),
         ("id = \"X1\"\ncomponent = \"sf1.chp\"\nfactor = 2", "there is no heat_exchanger"),
     ] {

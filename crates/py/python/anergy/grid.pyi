@@ -3691,6 +3691,10 @@ class _Unit:
         stop_heat: Sequence[float] | None = None,
         efficiency_factor: float | None = None,
         part_load_factor: Sequence[float] | None = None,
+        metal_capacity_j_k: float | None = None,
+        metal_capacity_kj_k: float | None = None,
+        metal_conductance_w_k: float | None = None,
+        metal_conductance_kw_k: float | None = None,
         idle_w: float | None = None,
         idle_kw: float | None = None,
         idle_mw: float | None = None,
@@ -3782,6 +3786,11 @@ class _Unit:
             Efficiency over what the map says, at all loads. Default: 1.0.
         part_load_factor
             The same at 20, 40 and 60 % of the load besides; 1 at full load. Empty: 1 everywhere.
+        metal_capacity_j_k
+            Heat capacity of metal that takes part beside what start and stop show, J/K; 0 for none. Default:
+            0.0. Also metal_capacity_kj_k.
+        metal_conductance_w_k
+            Conductance between this metal and the water, W/K. Default: 100.0. Also metal_conductance_kw_k.
         idle_w
             Electricity of control, fan and pump, W. Default: 35.0. Also idle_kw, idle_mw.
         dynamics
@@ -6767,6 +6776,34 @@ class _Effect:
             Interval of the value; changes nothing
         factor
             Power over its rating; 1 changes nothing.
+        """
+    def g7(
+        self,
+        component: str,
+        *,
+        because: str | None = None,
+        ci95: Any = None,
+        capacity_j_k: float | None = None,
+        capacity_kj_k: float | None = None,
+        conductance_w_k: float | None = None,
+        conductance_kw_k: float | None = None,
+    ) -> None:
+        """Adds `[[effect]]` with id = "G7".
+
+        The effect as written.
+
+        Parameters
+        ----------
+        component
+            Component it belongs to
+        because
+            Why it is here; changes nothing
+        ci95
+            Interval of the value; changes nothing
+        capacity_j_k
+            Heat capacity of metal beside what the model has, J/K; 0 changes nothing. Also capacity_kj_k.
+        conductance_w_k
+            Conductance between metal and water, W/K. Default: 100.0. Also conductance_kw_k.
         """
     def x1(
         self,

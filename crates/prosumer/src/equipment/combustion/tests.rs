@@ -39,6 +39,7 @@ impl Bench {
 
     fn step(&mut self, dt_s: f64) {
         let signals = Signals(&self.signals);
+        let before_j = self.unit.stored_j(&self.state);
         self.unit.begin(dt_s, &mut self.state);
         let mut wanted = [PortRequest::default()];
         self.unit.request(&signals, &[self.port], &mut self.state, &mut wanted);
@@ -50,7 +51,8 @@ impl Bench {
         self.exchange =
             self.unit.advance(dt_s, &signals, &[self.port], &mut self.state, &mut self.out);
         let left_w = self.exchange.electric_w + self.exchange.external_w - self.out("q_flow_w");
-        assert!(left_w.abs() < 1e-9, "{left_w} W");
+        let kept_w = (self.unit.stored_j(&self.state) - before_j) / dt_s;
+        assert!((left_w - kept_w).abs() < 1e-6, "{left_w} W, {kept_w} W");
     }
 
     fn steps(&mut self, dt_s: f64, span_s: f64) {
@@ -97,6 +99,40 @@ fn efficiency_of_the_boiler() {
         let got = steady_boiler(m, return_degc).out("q_flow_w");
         assert!((got / 1000.0 - kw).abs() < 0.06, "{m} {return_degc}: {got}");
     }
+}
+
+#[test]
+fn metal_gives_back_what_the_return_has_left_in_it() {
+    let params = |metal_capacity_j_k| CondensingBoilerParams {
+        modulation: 1.0,
+        dynamics: false,
+        metal_capacity_j_k,
+        flow_control: GeneratorFlow::ConstantFlow,
+        ..CondensingBoilerParams::default()
+    };
+    let heat_j = |metal_capacity_j_k: f64, return_degc: f64| {
+        let mut bench = Bench::new(params(metal_capacity_j_k).build(&water()), 45.0);
+        bench.return_k = return_degc + 273.15;
+        bench.steps(10.0, 1200.0);
+        (bench.out("heat_j"), bench)
+    };
+    // 5 kJ/K, from 45 to 35 degC and to 50 degC: 50 kJ into the water, 25 kJ out of it; 20 l/min take 59 s for all but 1/e of it.
+    for (return_degc, expected_j) in [(35.0, 50e3), (50.0, -25e3), (45.0, 0.0)] {
+        let ((with, bench), (without, _)) = (heat_j(5000.0, return_degc), heat_j(0.0, return_degc));
+        // The map takes the return of the step before: some joules.
+        assert!((with - without - expected_j).abs() < 60.0, "{return_degc}: {}", with - without);
+        assert!((bench.out("t_metal_k") - 273.15 - return_degc).abs() < 1e-3);
+        // Fuel is that of the burner alone.
+        assert!(
+            (bench.out("efficiency") - heat_j(0.0, return_degc).1.out("efficiency")).abs() < 1e-6
+        );
+    }
+    // In a pause it keeps its temperature.
+    let mut idle = Bench::new(params(5000.0).build(&water()), 45.0);
+    idle.signals[MODULATION] = 0.0;
+    idle.return_k -= 20.0;
+    idle.steps(10.0, 600.0);
+    assert!((idle.out("t_metal_k") - 318.15).abs() < 1e-9 && idle.out("heat_j") == 0.0);
 }
 
 #[test]
