@@ -30,6 +30,9 @@ NETWORKS = ["wntr/library/networks/Net3.inp", "wntr/library/networks/ky4.inp",
             "wntr/library/networks/ky10.inp", "epyt/networks/L-TOWN.inp",
             "wntr/library/networks/Net6.inp"]
 
+# The first words of what the tables are followed by.
+BY_HAND = "Against the aims:"
+
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
@@ -54,7 +57,9 @@ def main() -> None:
             print(name, ours, peer, flush=True)
             rows.append((name, ours, peer))
         heat = [heat_grid(consumers, folder, arguments) for consumers in (50, 500)]
-    Path(arguments.out).write_text(report(rows, heat))
+    out = Path(arguments.out)
+    written = out.read_text() if out.exists() else ""
+    out.write_text(report(rows, heat) + by_hand(written))
 
 
 def run(command: list[str]) -> str:
@@ -154,6 +159,13 @@ def heat_grid(consumers: int, folder: str, arguments: argparse.Namespace) -> dic
     result = {"consumers": consumers, "pandapipes_us": min(times) * 1e6, "ours": ours}
     print(result, flush=True)
     return result
+
+
+def by_hand(written: str) -> str:
+    """What is written below the tables: all from the line that begins with BY_HAND on."""
+    lines = written.splitlines(keepends=True)
+    first = next((i for i, line in enumerate(lines) if line.startswith(BY_HAND)), len(lines))
+    return "\n" + "".join(lines[first:]) if lines[first:] else ""
 
 
 def report(rows: list, heat: list) -> str:

@@ -48,6 +48,28 @@ def heat_net() -> pp.pandapipesNet:
     return net
 
 
+def exchanger_net() -> pp.pandapipesNet:
+    """Heat exchangers: at controlled flows as consumers, and one that warms the return of all."""
+    net = pp.create_empty_network("heat exchangers", fluid="water")
+    hot = [pp.create_junction(net, pn_bar=6, tfluid_k=340) for _ in range(3)]
+    cold = [pp.create_junction(net, pn_bar=6, tfluid_k=340) for _ in range(3)]
+    end = pp.create_junction(net, pn_bar=6, tfluid_k=340)
+    pp.create_circ_pump_const_pressure(net, end, hot[0], 6, 2, t_flow_k=345)
+    lines = [(hot[0], hot[1]), (hot[1], hot[2]), (cold[2], cold[1]), (cold[1], cold[0])]
+    for a, b in lines:
+        pp.create_pipe_from_parameters(
+            net, a, b, 0.3, inner_diameter_mm=70, k_mm=0.1, u_w_per_m2k=2, text_k=283
+        )
+    for i, (m_flow, heat) in enumerate(((0.8, 60e3), (0.5, 30e3)), start=1):
+        middle = pp.create_junction(net, pn_bar=6, tfluid_k=340)
+        pp.create_flow_control(net, hot[i], middle, m_flow)
+        pp.create_heat_exchanger(net, middle, cold[i], qext_w=heat, loss_coefficient=50, inner_diameter_mm=50)
+    last = pp.create_junction(net, pn_bar=6, tfluid_k=340)
+    pp.create_heat_exchanger(net, cold[0], last, qext_w=-25e3, loss_coefficient=80, inner_diameter_mm=50)
+    pp.create_pipe_from_parameters(net, last, end, 0.1, inner_diameter_mm=70, k_mm=0.1)
+    return net
+
+
 def parts_net() -> pp.pandapipesNet:
     """A valve, a pump, a heat exchanger, sinks and sources, a closed valve."""
     net = pp.create_empty_network("all parts", fluid="water")
@@ -70,7 +92,7 @@ def parts_net() -> pp.pandapipesNet:
 
 def nets() -> dict:
     """Constructors by name."""
-    found = {"built here: " + build.__name__: build for build in (heat_net, parts_net)}
+    found = {"built here: " + build.__name__: build for build in (heat_net, exchanger_net, parts_net)}
     for name in sorted(vars(networks)):
         if name.startswith(("water_", "heat_transfer_")) and callable(getattr(networks, name)):
             found[name] = getattr(networks, name)

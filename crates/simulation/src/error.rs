@@ -1,7 +1,7 @@
 //! Why a run cannot go on, with the names of the model.
 
 use crate::diagnostic::Diagnostics;
-use anergy_core::error::{FactorError, RecordError};
+use anergy_core::error::{FactorError, Legible, RecordError};
 use thiserror::Error;
 
 /// Why a run or a solve failed.
@@ -32,8 +32,8 @@ pub enum RunError {
     },
     /// The given flows would need pressures that nothing holds.
     #[error(
-        "at {time}: edge \"{edge}\" would need {:.3e} bar to pass {m_flow_kg_s:.6} kg/s; is it closed while \
-         flows are imposed behind it?", .dp_pa / 1e5
+        "at {time}: edge \"{edge}\" would need {:.3e} bar to pass {} kg/s; is it closed while flows are \
+         imposed behind it?", .dp_pa / 1e5, Legible(*.m_flow_kg_s)
     )]
     Absurd {
         /// Simulated time.
@@ -47,9 +47,9 @@ pub enum RunError {
     },
     /// Imposed flows leave a part of the network with more water than can leave.
     #[error(
-        "at {time}: {m_flow_kg_s:.6} kg/s more enter than can leave the part of the network around node \
-         \"{node}\": flows are imposed on all its ends, or its circuit only has a pressure reference, \
-         which exchanges no water"
+        "at {time}: {} kg/s more enter than can leave the part of the network around node \"{node}\": flows \
+         are imposed on all its ends, or its circuit only has a pressure reference, which exchanges no water",
+        Legible(*.m_flow_kg_s)
     )]
     Unbalanced {
         /// Simulated time.

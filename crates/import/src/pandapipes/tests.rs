@@ -52,6 +52,10 @@ fn net() -> Value {
               "treturn_k"],
             &[json!([1, 2, 42_000.0, 0.5, null, null])],
         ),
+        "heat_exchanger": table(
+            &["from_junction", "to_junction", "qext_w", "inner_diameter_mm", "loss_coefficient"],
+            &[json!([2, 3, 3000.0, 50.0, 1.0]), json!([2, 3, 0.0, 50.0, 1.0])],
+        ),
         "compressor": table(&["from_junction"], &[json!([0])]),
         "std_types": { "pump": { "P": { "_object": "{\"reg_par\": [-0.5, -1.0, 6.0]}" } } },
     }})
@@ -91,6 +95,11 @@ fn a_small_net() {
     // The flow of a consumer is against its port: 42 kW/(4200 J/(kg K) 0.5 kg/s) = 20 K
     has(&import, "heat_consumer0", &["from = \"junction2\"", "to = \"junction1\""]);
     has(&import, "heat_consumer0.load", &["load_w = 42000.0", "temperature_difference_k = 20.0"]);
+    // What an exchanger takes from the water is negative for the water.
+    has(&import, "heat_exchanger0", &["kind = \"resistance\"", "dp_nominal_pa = 497.5"]);
+    let heat = ["kind = \"heat_source\"", "port = \"heat_exchanger0\"", "heat_w = -3000.0"];
+    has(&import, "heat_exchanger0.heat", &heat);
+    assert!(!import.model.contains("heat_exchanger1.heat"));
     let says = |kind: NoteKind, part: &str| {
         assert!(
             import.notes.iter().any(|note| note.kind == kind && note.text.contains(part)),

@@ -175,10 +175,7 @@ impl Writer<'_> {
             "pump" => self.pump(branch, &id, &ends)?,
             "heat_exchanger" => {
                 self.resistance(branch, &id, &ends)?;
-                if table.maybe(row, "qext_w").is_some_and(|heat| heat != 0.0) {
-                    let what = format!("{id}: its heat qext_w; it is a resistance");
-                    self.text.note(NoteKind::NotTranslated, None, what);
-                }
+                self.heat(branch, &id);
             }
             "heat_consumer" => self.consumer(branch, &id, &ends)?,
             "flow_control" if !table.flag(row, "control_active") => {
@@ -224,10 +221,22 @@ impl Writer<'_> {
         let surroundings = table.maybe(row, "text_k").filter(|t_k| u.is_some() && *t_k > 200.0);
         entry.maybe("surroundings_k", surroundings);
         if table.maybe(row, "qext_w").is_some_and(|heat| heat != 0.0) {
-            let what = format!("{id}: its heat qext_w");
+            let what = format!("{id}: its heat qext_w, which pandapipes has given up too");
             self.text.note(NoteKind::NotTranslated, None, what);
         }
         Ok(())
+    }
+
+    /// What an exchanger takes from the water that passes its resistance.
+    fn heat(&mut self, Branch { table, row, .. }: &Branch<'_>, port: &str) {
+        if let Some(heat_w) = table.maybe(row, "qext_w").filter(|heat| *heat != 0.0) {
+            self.text
+                .entry("unit")
+                .text("id", &format!("{port}.heat"))
+                .text("kind", "heat_source")
+                .text("port", port)
+                .number("heat_w", -heat_w);
+        }
     }
 
     fn resistance(

@@ -1,6 +1,6 @@
 //! Why a network has no pressures and flows.
 
-use anergy_core::error::FactorError;
+use anergy_core::error::{FactorError, Legible};
 use anergy_core::ids::{EdgeId, NodeId};
 use thiserror::Error;
 
@@ -9,8 +9,8 @@ use thiserror::Error;
 pub enum HydraulicError {
     /// The iteration limit was reached.
     #[error(
-        "no convergence after {iterations} iterations: edge {} misses its law by {residual_pa} Pa, node {} \
-         its mass balance by {mass_residual_kg_s} kg/s", .edge.0, .node.0
+        "no convergence after {iterations} iterations: edge {} misses its law by {residual_pa:.3e} Pa, node {} \
+         its mass balance by {mass_residual_kg_s:.3e} kg/s", .edge.0, .node.0
     )]
     NotConverged {
         /// Iterations done.
@@ -25,7 +25,7 @@ pub enum HydraulicError {
         mass_residual_kg_s: f64,
     },
     /// The given flows would need pressures that nothing holds, and that cannot be computed either.
-    #[error("edge {} would need {dp_pa} Pa to pass {m_flow_kg_s} kg/s", .edge.0)]
+    #[error("edge {} would need {dp_pa:.3e} Pa to pass {} kg/s", .edge.0, Legible(*.m_flow_kg_s))]
     Absurd {
         /// The edge, for example a valve that is closed but for its leak.
         edge: EdgeId,
@@ -35,7 +35,7 @@ pub enum HydraulicError {
         m_flow_kg_s: f64,
     },
     /// More water enters than leaves a part of the network that is closed.
-    #[error("{m_flow_kg_s} kg/s more enter than leave the closed part around node {}", .node.0)]
+    #[error("{} kg/s more enter than leave the closed part around node {}", Legible(*.m_flow_kg_s), .node.0)]
     Unbalanced {
         /// A node of the part.
         node: NodeId,

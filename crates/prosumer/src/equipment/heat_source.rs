@@ -1,10 +1,11 @@
-//! Heat for the water that passes: a fixed supply temperature, or one that follows the outdoor
-//! temperature.
+//! Heat for the water that passes: a fixed supply temperature, one that follows the outdoor temperature, or a
+//! given heat flow.
 //!
 //! **Equation** `T_out = T_supply`, or `T_out = f(T_outdoor)` with straight lines between the points of
-//! the curve and its end values beyond them. **Assumptions** any heat is available at once, also cold
-//! for water that is too warm; the flow is that of the edge. **Validity** steps longer than the time
-//! constant of the control of a real boiler (a few minutes).
+//! the curve and its end values beyond them, or `T_out = T_in + Q/(|m| cp)`; standing water takes up nothing.
+//! **Assumptions** any heat is available at once, also cold for water that is too warm; the flow is that of the
+//! edge. **Validity** steps longer than the time constant of the control of a real boiler (a few minutes); a heat
+//! flow only where enough water passes to take it: water that would boil or freeze ends the run.
 //!
 //! **Sources** sliding supply temperature of district heating, `frederiksen2013`.
 
@@ -17,7 +18,7 @@ use anergy_core::signal::Signals;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A heat source as written in a model file: with `supply_k` or `outdoor_curve_k`.
+/// A heat source as written in a model file: with `supply_k`, `outdoor_curve_k` or `heat_w`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeatSourceParams {
@@ -30,11 +31,14 @@ pub struct HeatSourceParams {
     /// Outdoor temperature while nothing drives it, K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outdoor_k: Option<f64>,
+    /// Heat into the water that passes, whatever its flow and temperature, W; negative takes heat from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat_w: Option<f64>,
 }
 
 impl Default for HeatSourceParams {
     fn default() -> Self {
-        Self { supply_k: Some(353.15), outdoor_curve_k: Vec::new(), outdoor_k: None }
+        Self { supply_k: Some(353.15), outdoor_curve_k: Vec::new(), outdoor_k: None, heat_w: None }
     }
 }
 
@@ -42,6 +46,7 @@ impl Default for HeatSourceParams {
 enum Supply {
     Fixed(f64),
     Curve { points: Vec<(f64, f64)>, outdoor_k: f64 },
+    Heat(f64),
 }
 
 /// A heat source ready to run.
@@ -61,12 +66,18 @@ impl HeatSourceParams {
     /// Names the field that is out of range or missing.
     pub fn build(&self, medium: &Medium) -> Result<HeatSource, UnitError> {
         let fields = |problem: &str| Err(UnitError::Fields { problem: problem.to_owned() });
-        let supply = match (self.supply_k, self.outdoor_curve_k.as_slice()) {
-            (Some(t_k), []) if self.outdoor_k.is_none() => {
-                Supply::Fixed(super::liquid(medium, "supply_k", t_k)?)
+        let needs_curve = || fields("outdoor_k (outdoor_degc) needs an outdoor_curve_degc");
+        let supply = match (self.supply_k, self.outdoor_curve_k.as_slice(), self.heat_w) {
+            (Some(_), [], None) | (None, [], Some(_)) if self.outdoor_k.is_some() => {
+                return needs_curve();
             }
-            (Some(_), []) => return fields("outdoor_k (outdoor_degc) needs an outdoor_curve_degc"),
-            (None, points @ [_, ..]) => {
+            (Some(t_k), [], None) => Supply::Fixed(super::liquid(medium, "supply_k", t_k)?),
+            (None, [], Some(heat_w)) if heat_w.is_finite() => Supply::Heat(heat_w),
+            (None, [], Some(value)) => {
+                let requirement = "must be a finite number";
+                return Err(UnitError::OutOfRange { field: "heat_w", value, requirement });
+            }
+            (None, points @ [_, ..], None) => {
                 for pair in points.windows(2) {
                     if pair[1].0 <= pair[0].0 || pair[1].0.is_nan() {
                         return fields("outdoor_curve: the outdoor temperatures must rise");
@@ -80,7 +91,7 @@ impl HeatSourceParams {
             }
             _ => {
                 return fields(
-                    "give either supply_k (supply_degc) or outdoor_curve_k (outdoor_curve_degc)",
+                    "give one of supply_k (supply_degc), outdoor_curve_k (outdoor_curve_degc) and heat_w (heat_kw)",
                 );
             }
         };
@@ -99,10 +110,13 @@ fn interpolated(points: &[(f64, f64)], x: f64) -> f64 {
 }
 
 impl HeatSource {
-    fn supply_k(&self, signals: &Signals<'_>) -> f64 {
+    fn outlet(&self, signals: &Signals<'_>) -> Outlet {
         match &self.supply {
-            Supply::Fixed(_) => signals.get(0),
-            Supply::Curve { points, .. } => interpolated(points, signals.get(0)),
+            Supply::Fixed(_) => Outlet::Temperature(signals.get(0)),
+            Supply::Curve { points, .. } => {
+                Outlet::Temperature(interpolated(points, signals.get(0)))
+            }
+            Supply::Heat(_) => Outlet::HeatFlow(signals.get(0)),
         }
     }
 }
@@ -113,23 +127,27 @@ impl ThermalUnit for HeatSource {
     }
 
     fn inputs(&self) -> Vec<UnitInput> {
-        let (name, initial, follows) = match &self.supply {
-            Supply::Fixed(t_k) => ("supply_k", *t_k, None),
+        let (name, unit, initial, min, follows) = match &self.supply {
+            Supply::Fixed(t_k) => ("supply_k", "k", *t_k, 0.0, None),
             Supply::Curve { outdoor_k, .. } => {
-                ("outdoor_k", *outdoor_k, Some("weather.t_outdoor_k"))
+                ("outdoor_k", "k", *outdoor_k, 0.0, Some("weather.t_outdoor_k"))
             }
+            Supply::Heat(heat_w) => ("heat_w", "w", *heat_w, f64::NEG_INFINITY, None),
         };
-        vec![UnitInput { name, unit: "k", initial, min: 0.0, max: f64::INFINITY, follows }]
+        vec![UnitInput { name, unit, initial, min, max: f64::INFINITY, follows }]
     }
 
     fn outputs(&self) -> Vec<UnitOutput> {
-        vec![
+        let mut outputs = vec![
             UnitOutput::new("q_flow_w", "W"),
             UnitOutput::new("m_flow_kg_s", "kg s-1"),
             UnitOutput::new("t_in_k", "K"),
             UnitOutput::new("t_out_k", "K"),
-            UnitOutput::new("supply_set_k", "K"),
-        ]
+        ];
+        if !matches!(self.supply, Supply::Heat(_)) {
+            outputs.push(UnitOutput::new("supply_set_k", "K"));
+        }
+        outputs
     }
 
     fn initial_state(&self, _initial_k: f64) -> Vec<f64> {
@@ -143,8 +161,7 @@ impl ThermalUnit for HeatSource {
         _state: &mut [f64],
         wanted: &mut [PortRequest],
     ) {
-        let outlet = Outlet::Temperature(self.supply_k(signals));
-        wanted[0] = PortRequest { m_flow_kg_s: 0.0, outlet };
+        wanted[0] = PortRequest { m_flow_kg_s: 0.0, outlet: self.outlet(signals) };
     }
 
     fn advance(
@@ -160,7 +177,9 @@ impl ThermalUnit for HeatSource {
         out[1] = m_flow_kg_s;
         out[2] = t_in_k;
         out[3] = t_out_k;
-        out[4] = self.supply_k(signals);
+        if let Outlet::Temperature(supply_k) = self.outlet(signals) {
+            out[4] = supply_k;
+        }
         Exchange { external_w: out[0], ..Exchange::default() }
     }
 }
@@ -182,7 +201,7 @@ mod tests {
         let curve = |points: &[(f64, f64)]| HeatSourceParams {
             supply_k: None,
             outdoor_curve_k: points.iter().map(|(x, y)| (x + 273.15, y + 273.15)).collect(),
-            outdoor_k: None,
+            ..HeatSourceParams::default()
         };
         // -12 degC: 90, 15 degC: 70; at 3 degC: 90 - 20 * 15/27 = 78.888...
         let params = curve(&[(-12.0, 90.0), (15.0, 70.0)]);
@@ -208,5 +227,32 @@ mod tests {
             ([0.0; 5], PortFlow { m_flow_kg_s: 1.0, t_in_k: 323.15, t_out_k: 353.15 });
         unit.advance(1.0, &Signals(&[353.15]), &[got], &mut [], &mut out);
         assert!((out[0] - 125_400.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_heat_flow_is_its_signal() {
+        let heat = |heat_w: f64| HeatSourceParams {
+            supply_k: None,
+            heat_w: Some(heat_w),
+            ..HeatSourceParams::default()
+        };
+        let unit = heat(-5000.0).build(&Medium::default()).unwrap();
+        assert_eq!((unit.inputs()[0].name, unit.inputs()[0].initial), ("heat_w", -5000.0));
+        let mut wanted = [PortRequest::default()];
+        unit.request(&Signals(&[-4180.0]), &[], &mut [], &mut wanted);
+        assert_eq!(wanted[0].outlet, Outlet::HeatFlow(-4180.0));
+        // 0.5 kg/s cooled by 2 K: 4180 * 0.5 * 2 = 4180 W
+        let (mut out, got) =
+            ([0.0; 4], PortFlow { m_flow_kg_s: 0.5, t_in_k: 323.15, t_out_k: 321.15 });
+        unit.advance(1.0, &Signals(&[-4180.0]), &[got], &mut [], &mut out);
+        assert!((out[0] + 4180.0).abs() < 1e-6);
+        assert_eq!(unit.outputs().len(), 4);
+        for wrong in [
+            HeatSourceParams { supply_k: Some(340.0), ..heat(1.0) },
+            HeatSourceParams { outdoor_k: Some(270.0), ..heat(1.0) },
+            heat(f64::NAN),
+        ] {
+            assert!(wrong.build(&Medium::default()).is_err(), "{wrong:?}");
+        }
     }
 }

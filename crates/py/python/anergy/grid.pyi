@@ -2534,10 +2534,13 @@ class _Unit:
         outdoor_curve_degc: Sequence[Sequence[float]] | None = None,
         outdoor_k: float | None = None,
         outdoor_degc: float | None = None,
+        heat_w: float | None = None,
+        heat_kw: float | None = None,
+        heat_mw: float | None = None,
     ) -> str | None:
         """Adds `[[unit]]` with kind = "heat_source".
 
-        A heat source as written in a model file: with `supply_k` or `outdoor_curve_k`.
+        A heat source as written in a model file: with `supply_k`, `outdoor_curve_k` or `heat_w`.
 
         Parameters
         ----------
@@ -2558,6 +2561,9 @@ class _Unit:
             outdoor_curve_degc.
         outdoor_k
             Outdoor temperature while nothing drives it, K. Also outdoor_degc.
+        heat_w
+            Heat into the water that passes, whatever its flow and temperature, W; negative takes heat from it.
+            Also heat_kw, heat_mw.
         """
     def air_source_heat_pump(
         self,
