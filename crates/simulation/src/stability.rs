@@ -7,6 +7,7 @@ pub mod advise;
 mod answers;
 pub mod blocking;
 mod chain;
+mod chains;
 mod count;
 mod elimination;
 mod flush;

@@ -4,12 +4,12 @@
 //! between, `theta = n h + delta`: `z^-(n+1) (Phi(h - delta) (z - Phi(h))^-1 Gamma(h) + Gamma(h - delta))`, exact.
 //! **Sources** `astrom2011`.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 type C64 = Complex<f64>;
 
 /// Lags in a row: those of an actuator, that of the water, that of a sensor.
-const MOST: usize = 4;
+pub(super) const MOST: usize = 4;
 /// Norm below which so many terms of the series of an exponential are all: 0.25^12/12! is 1e-16.
 const SMALL: f64 = 0.25;
 const TERMS: i32 = 12;
@@ -29,24 +29,24 @@ pub(super) struct Chain {
 pub(super) struct SampledChain {
     n: usize,
     /// Lags of actuator and water; one more is that of the sensor.
-    ahead: usize,
+    pub ahead: usize,
     /// Whole samples of the dead time.
     late: i32,
     phi: [[f64; MOST]; MOST],
     gamma: [f64; MOST],
-    reading: Reading,
+    pub reading: Reading,
 }
 
 /// How the last lag of a sampled chain, the reading, follows the ones before it.
 #[derive(Debug, Clone, Copy)]
-struct Reading {
+pub(super) struct Reading {
     /// Over a whole interval, from each lag and from the command.
-    by_ahead: [f64; MOST - 1],
-    by_command: f64,
+    pub by_ahead: [f64; MOST - 1],
+    pub by_command: f64,
     /// Over the rest of an interval, from each lag, from the command, and from the lag of the sensor itself.
-    by_ahead_rest: [f64; MOST - 1],
-    by_command_rest: f64,
-    by_itself_rest: f64,
+    pub by_ahead_rest: [f64; MOST - 1],
+    pub by_command_rest: f64,
+    pub by_itself_rest: f64,
 }
 
 impl Reading {
@@ -115,18 +115,18 @@ impl Chain {
 
     /// State after a time over the state before it, and over a command held meanwhile.
     fn step(&self, time_s: f64) -> ([[f64; MOST]; MOST], [f64; MOST]) {
-        let n = self.lags_s.len();
+        // The command first, then each lag behind the one that drives it: lower triangular.
         let mut rates = [[0.0; MOST + 1]; MOST + 1];
         for (i, lag_s) in self.lags_s.iter().enumerate() {
-            rates[i][i] = -time_s / lag_s;
-            let driver = if i == 0 { n } else { i - 1 };
-            rates[i][driver] = time_s / lag_s;
+            rates[i + 1][i + 1] = -time_s / lag_s;
+            rates[i + 1][i] = time_s / lag_s;
         }
         let step = exponential(&rates);
         let (mut phi, mut gamma) = ([[0.0; MOST]; MOST], [0.0; MOST]);
-        for ((phi, gamma), step) in phi.iter_mut().zip(&mut gamma).zip(&step).take(n) {
-            *gamma = step[n];
-            phi[..n].copy_from_slice(&step[..n]);
+        let own = step.iter().skip(1).take(self.lags_s.len());
+        for ((phi, gamma), step) in phi.iter_mut().zip(&mut gamma).zip(own) {
+            *gamma = step[0];
+            phi.copy_from_slice(&step[1..]);
         }
         (phi, gamma)
     }
@@ -139,12 +139,12 @@ impl SampledChain {
     }
 
     /// The dead time, which all chains of its sensor have.
-    fn late(&self, z: C64) -> C64 {
+    pub fn late(&self, z: C64) -> C64 {
         z.powi(-self.late)
     }
 
     /// Lags of actuator and water, which all chains behind them have: `(z - Phi) v = Gamma`, Phi lower triangular.
-    fn ahead(&self, z: C64) -> [C64; MOST - 1] {
+    pub fn ahead(&self, z: C64) -> [C64; MOST - 1] {
         let mut v = [Complex::new(0.0, 0.0); MOST - 1];
         for i in 0..self.ahead {
             let before: C64 = (0..i).map(|k| v[k] * self.phi[i][k]).sum();
@@ -154,141 +154,14 @@ impl SampledChain {
     }
 
     /// The lag of the sensor alone, which all its chains have.
-    fn behind(&self, z: C64) -> C64 {
+    pub fn behind(&self, z: C64) -> C64 {
         if self.n > self.ahead { (z - self.phi[self.n - 1][self.n - 1]).inv() } else { z }
-    }
-}
-
-/// The chains from all outputs to all measured values; what they share is worked out once.
-pub(super) struct Chains {
-    /// Actuators and sensors, each kind once.
-    actuator_lags_s: Vec<f64>,
-    sensors: Vec<Seen>,
-    actuator_of: Vec<usize>,
-    sensor_of: Vec<usize>,
-    /// Sensor by sensor; empty where the controllers are continuous.
-    sampled: Vec<SampledChain>,
-    /// Their readings: all that differs from pair to pair.
-    readings: Vec<Reading>,
-    /// Lag of the water in all of them, s.
-    water_lag_s: f64,
-    interval_s: f64,
-}
-
-/// A sensor of a measured value.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Seen {
-    pub lag_s: f64,
-    pub dead_s: f64,
-}
-
-impl Chains {
-    /// Chains of outputs with actuators of these lags and of values with these sensors, with a lag of the water or none
-    /// between them; the interval is 0 where the controllers are continuous.
-    pub fn new(actuator_lags_s: &[f64], seen: &[Seen], water_lag_s: f64, interval_s: f64) -> Self {
-        let (lags, actuator_of) = kinds(actuator_lags_s);
-        let (sensors, sensor_of) = kinds(seen);
-        let pairs = sensors.iter().flat_map(|seen| lags.iter().map(move |lag| (*lag, *seen)));
-        let chain = |(lag_s, seen): (f64, Seen)| {
-            Chain::new(lag_s, water_lag_s, seen.lag_s, seen.dead_s).sampled(interval_s)
-        };
-        let sampled: Vec<_> =
-            if interval_s > 0.0 { pairs.map(chain).collect() } else { Vec::new() };
-        let readings = sampled.iter().map(|chain| chain.reading).collect();
-        Self {
-            actuator_lags_s: lags,
-            sensors,
-            actuator_of,
-            sensor_of,
-            sampled,
-            readings,
-            water_lag_s,
-            interval_s,
-        }
-    }
-
-    /// Whether all chains are one.
-    pub fn alike(&self) -> bool {
-        self.actuator_lags_s.len() == 1 && self.sensors.len() == 1
-    }
-
-    /// z where the controllers are sampled, otherwise s itself.
-    pub fn variable(&self, s: C64) -> C64 {
-        if self.interval_s > 0.0 { (s * self.interval_s).exp() } else { s }
-    }
-
-    /// The answers of all measured values (rows) to all commands at a complex frequency, with their gains.
-    pub fn plant(&self, s: C64, gains: &DMatrix<f64>) -> DMatrix<C64> {
-        let (n, z) = (self.actuator_lags_s.len(), self.variable(s));
-        let (of, to) = (&self.sensor_of, &self.actuator_of);
-        if self.sampled.is_empty() {
-            let ahead: Vec<C64> = self
-                .actuator_lags_s
-                .iter()
-                .map(|lag| Chain::new(*lag, self.water_lag_s, 0.0, 0.0).at(s))
-                .collect();
-            let behind: Vec<C64> = self
-                .sensors
-                .iter()
-                .map(|seen| Chain::new(0.0, 0.0, seen.lag_s, seen.dead_s).at(s))
-                .collect();
-            return gains.map_with_location(|i, j, gain| behind[of[i]] * (ahead[to[j]] * gain));
-        }
-        let ahead: Vec<_> = self.sampled[..n].iter().map(|chain| chain.ahead(z)).collect();
-        let first = self.sampled.iter().step_by(n);
-        let behind: Vec<_> = first.map(|chain| (chain.behind(z), chain.late(z))).collect();
-        gains.map_with_location(|i, j, gain| {
-            let (behind, late) = behind[of[i]];
-            self.readings[of[i] * n + to[j]].through(&ahead[to[j]], behind, late) * gain
-        })
-    }
-
-    /// The answer of one value to one command.
-    pub fn one(&self, i: usize, j: usize, s: C64) -> C64 {
-        let n = self.actuator_lags_s.len();
-        match self.sampled.get(self.sensor_of[i] * n + self.actuator_of[j]) {
-            Some(sampled) => sampled.at(self.variable(s)),
-            None => self.continuous(i, j, s),
-        }
-    }
-
-    /// The answer of one value to one command that changes without a pause.
-    pub fn continuous(&self, i: usize, j: usize, s: C64) -> C64 {
-        self.chain(i, j).at(s)
-    }
-
-    /// All times between an output and a value added up, s.
-    pub fn total_s(&self, i: usize, j: usize) -> f64 {
-        self.chain(i, j).total_s()
-    }
-
-    fn chain(&self, i: usize, j: usize) -> Chain {
-        let seen = self.sensors[self.sensor_of[i]];
-        let actuator_lag_s = self.actuator_lags_s[self.actuator_of[j]];
-        Chain::new(actuator_lag_s, self.water_lag_s, seen.lag_s, seen.dead_s)
-    }
-
-    /// The fastest and the slowest of all times added up, s.
-    pub fn times_s(&self) -> (f64, f64) {
-        let range = |all: &mut dyn Iterator<Item = f64>| {
-            all.fold((f64::INFINITY, 0.0), |(min, max): (f64, f64), t| (min.min(t), max.max(t)))
-        };
-        let ahead = range(&mut self.actuator_lags_s.iter().map(|lag| 2.0 * lag));
-        let behind = range(&mut self.sensors.iter().map(|seen| seen.lag_s + seen.dead_s));
-        let water_s = self.water_lag_s;
-        let least = (ahead.0 + water_s + behind.0).max(self.interval_s);
-        (least, (ahead.1 + water_s + behind.1).max(self.interval_s))
-    }
-
-    /// The longest dead time, s.
-    pub fn dead_s(&self) -> f64 {
-        self.sensors.iter().fold(self.interval_s, |longest, seen| longest.max(seen.dead_s))
     }
 }
 
 type Square = [[f64; MOST + 1]; MOST + 1];
 
-/// Exponential of a matrix: its series for a part so small that it ends, squared as often as that was halved.
+/// Exponential of a lower triangular matrix: its series for a part so small that it ends, squared as often as that was halved.
 fn exponential(matrix: &Square) -> Square {
     let entries = || matrix.iter().flatten();
     let largest = entries().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
@@ -307,27 +180,15 @@ fn exponential(matrix: &Square) -> Square {
     (0..halvings).fold(sum, |power, _| product(&power, &power))
 }
 
+/// Product of lower triangular matrices.
 fn product(a: &Square, b: &Square) -> Square {
     let mut product = [[0.0; MOST + 1]; MOST + 1];
-    for (row, a) in product.iter_mut().zip(a) {
-        for (share, b) in a.iter().zip(b) {
-            row.iter_mut().zip(b).for_each(|(entry, b)| *entry += share * b);
+    for (i, (row, a)) in product.iter_mut().zip(a).enumerate() {
+        for (k, (share, b)) in a.iter().zip(b).take(i + 1).enumerate() {
+            row[..=k].iter_mut().zip(b).for_each(|(entry, b)| *entry += share * b);
         }
     }
     product
-}
-
-/// What is different in a list, and which of it each entry is.
-fn kinds<T: Copy + PartialEq>(all: &[T]) -> (Vec<T>, Vec<usize>) {
-    let mut kinds: Vec<T> = Vec::new();
-    let of = all.iter().map(|one| {
-        kinds.iter().position(|kind| kind == one).unwrap_or_else(|| {
-            kinds.push(*one);
-            kinds.len() - 1
-        })
-    });
-    let of = of.collect();
-    (kinds, of)
 }
 
 #[cfg(test)]
@@ -353,25 +214,5 @@ mod tests {
         let rest = (-0.6_f64).exp();
         let by_hand = (rest * (1.0 - e) / (z - e) + (1.0 - rest)) / z;
         assert!((late - by_hand).norm() < 1e-12);
-        // What chains share does not change them.
-        let seen = [(0.0, 0.4), (0.7, 0.0), (0.7, 1.0), (0.7, 0.0)];
-        let seen = seen.map(|(lag_s, dead_s)| Seen { lag_s, dead_s });
-        let lags_s = [1.5, 0.0, 0.6];
-        let s = Complex::new(-0.02, 0.9);
-        for (interval_s, water_s) in [(0.0, 0.0), (0.5, 0.0), (0.0, 0.8), (0.5, 0.8)] {
-            let chains = Chains::new(&lags_s, &seen, water_s, interval_s);
-            let all = chains.plant(s, &DMatrix::from_element(4, 3, 1.0));
-            for (i, seen) in seen.iter().enumerate() {
-                for (j, lag_s) in lags_s.iter().enumerate() {
-                    let chain = Chain::new(*lag_s, water_s, seen.lag_s, seen.dead_s);
-                    let alone = match interval_s {
-                        0.0 => chain.at(s),
-                        h => chain.sampled(h).at((s * h).exp()),
-                    };
-                    assert!((all[(i, j)] - alone).norm() < 1e-13);
-                    assert!((chains.one(i, j, s) - alone).norm() < 1e-13);
-                }
-            }
-        }
     }
 }

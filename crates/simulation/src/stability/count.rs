@@ -7,9 +7,9 @@
 //! what is left to the end is what the pivots, all in the right half plane, stand away from the real axis. **Sources**
 //! `skogestad2005` (argument principle).
 
-use super::elimination::rows;
+use super::elimination::Rows;
 use super::loops::Loops;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 use std::f64::consts::PI;
 
 type C64 = Complex<f64>;
@@ -56,15 +56,12 @@ impl Determinant {
             let factors = lambdas.iter().map(|lambda| lambda * common + 1.0);
             return Self::product(factors, largest * common.norm());
         }
-        let mut matrix = case.loops.matrix(s);
-        matrix.iter_mut().for_each(|entry| *entry *= factor);
-        let norm = norm(&matrix);
-        match pivots(&matrix) {
+        let matrix = case.loops.matrix(s);
+        let norm = factor * norm(&matrix);
+        match pivots(matrix.closed(factor)) {
             Some(pivots) => Self::product(pivots.into_iter(), norm),
             None => {
-                let mut closed = matrix;
-                (0..closed.nrows()).for_each(|i| closed[(i, i)] += 1.0);
-                let lu = closed.lu();
+                let lu = case.loops.closed(s, factor).dense().lu();
                 let sign: C64 = lu.p().determinant();
                 let whole =
                     Self::product(lu.u().diagonal().iter().copied().chain([sign]), f64::INFINITY);
@@ -97,50 +94,36 @@ impl Determinant {
 }
 
 /// The smaller one of the largest sums of a row and of a column.
-fn norm(matrix: &DMatrix<C64>) -> f64 {
-    let (mut rows, mut largest) = (vec![0.0; matrix.nrows()], 0.0_f64);
-    for column in matrix.column_iter() {
+fn norm(matrix: &Rows) -> f64 {
+    let (mut columns, mut largest) = (vec![0.0; matrix.columns()], 0.0_f64);
+    for i in 0..matrix.rows() {
         let mut sum = 0.0;
-        for (row, entry) in rows.iter_mut().zip(column.iter()) {
-            let size = entry.re.abs() + entry.im.abs();
-            *row += size;
+        let (re, im) = matrix.row(i);
+        for (column, (re, im)) in columns.iter_mut().zip(re.iter().zip(im)) {
+            let size = re.abs() + im.abs();
+            *column += size;
             sum += size;
         }
         largest = largest.max(sum);
     }
-    rows.into_iter().fold(0.0, f64::max).min(largest)
+    columns.into_iter().fold(0.0, f64::max).min(largest)
 }
 
-/// Pivots of `1 + M` in the order of its rows; `None` where one is lost.
-fn pivots(matrix: &DMatrix<C64>) -> Option<Vec<C64>> {
-    let n = matrix.nrows();
-    // Row by row, real and imaginary parts apart: the inner loop is one of plain numbers.
-    let (mut re, mut im) = rows(matrix);
-    (0..n).for_each(|i| re[i * n + i] += 1.0);
+/// Pivots of a matrix in the order of its rows; `None` where one is lost.
+fn pivots(mut matrix: Rows) -> Option<Vec<C64>> {
     let largest = |i: usize| {
-        let row = re[i * n..(i + 1) * n].iter().chain(&im[i * n..(i + 1) * n]);
-        row.fold(0.0_f64, |largest, x| largest.max(x.abs()))
+        let (re, im) = matrix.row(i);
+        re.iter().chain(im).fold(0.0_f64, |largest, x| largest.max(x.abs()))
     };
-    let scales: Vec<f64> = (0..n).map(largest).collect();
-    let mut pivots = Vec::with_capacity(n);
-    for k in 0..n {
-        let pivot = C64::new(re[k * n + k], im[k * n + k]);
-        if pivot.norm().partial_cmp(&(LOST * scales[k])) != Some(std::cmp::Ordering::Greater) {
+    let scales: Vec<f64> = (0..matrix.rows()).map(largest).collect();
+    let mut pivots = Vec::with_capacity(scales.len());
+    for (k, scale) in scales.into_iter().enumerate() {
+        let pivot = matrix.at(k, k);
+        if pivot.norm().partial_cmp(&(LOST * scale)) != Some(std::cmp::Ordering::Greater) {
             return None;
         }
         pivots.push(pivot);
-        let inverse = pivot.inv();
-        let (upper_re, lower_re) = re.split_at_mut((k + 1) * n);
-        let (upper_im, lower_im) = im.split_at_mut((k + 1) * n);
-        let (row_re, row_im) = (&upper_re[k * n + k + 1..], &upper_im[k * n + k + 1..]);
-        for (own_re, own_im) in lower_re.chunks_exact_mut(n).zip(lower_im.chunks_exact_mut(n)) {
-            let share = C64::new(own_re[k], own_im[k]) * inverse;
-            let own = own_re[k + 1..].iter_mut().zip(&mut own_im[k + 1..]);
-            for ((x, y), (a, b)) in own.zip(row_re.iter().zip(row_im)) {
-                *x -= share.re * a - share.im * b;
-                *y -= share.re * b + share.im * a;
-            }
-        }
+        matrix.eliminate(k);
     }
     Some(pivots)
 }
@@ -213,20 +196,26 @@ mod tests {
 
     #[test]
     fn pivots_are_quotients_of_leading_minors() {
+        let rows = |n: usize, entry: &dyn Fn(usize, usize) -> C64| {
+            let mut rows = Rows::zeros(n, n);
+            (0..n * n).for_each(|k| rows.set(k / n, k % n, entry(k / n, k % n)));
+            rows
+        };
         let entry = |i: usize, j: usize| {
             C64::from_polar(0.3 + 0.1 * (i * 7 + j * 3 % 5) as f64, (i + 2 * j) as f64)
         };
-        let matrix = DMatrix::from_fn(5, 5, entry);
-        let found = pivots(&matrix).unwrap();
-        let closed = matrix + DMatrix::identity(5, 5);
-        let minor = |k: usize| closed.view((0, 0), (k, k)).into_owned().determinant();
+        let closed = rows(5, &entry).closed(1.0);
+        let found = pivots(closed.clone()).unwrap();
+        let minor = |k: usize| closed.dense().view((0, 0), (k, k)).into_owned().determinant();
         for (k, found) in found.iter().enumerate() {
             let expected = if k == 0 { minor(1) } else { minor(k + 1) / minor(k) };
             assert!((found - expected).norm() < 1e-12, "{k}");
         }
         // A leading minor of zero: only with exchanges.
-        let turned =
-            DMatrix::from_row_slice(2, 2, &[-1.0, 1.0, 1.0, 0.0].map(|x| C64::new(x, 0.0)));
-        assert!(pivots(&turned).is_none());
+        let turned = rows(2, &|i, j| C64::new([[0.0, 1.0], [1.0, 1.0]][i][j], 0.0));
+        assert!(pivots(turned).is_none());
+        // Sums of the rows 3 and 7, of the columns 4 and 6.
+        let one_to_four = rows(2, &|i, j| C64::new(0.0, (1 + 2 * i + j) as f64));
+        assert_eq!(norm(&one_to_four), 6.0);
     }
 }

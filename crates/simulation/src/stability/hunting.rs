@@ -2,7 +2,7 @@
 //! at which the first of them stops decaying. What lies between outputs and measured values: `answers.rs`.
 
 use super::answers::{Answers, Link, answers, is_set_point};
-use super::chain::Seen;
+use super::chains::Seen;
 use super::law::Law;
 use super::loops::{Between, Loops};
 use super::modes::Found;

@@ -79,7 +79,7 @@ pub(super) fn limit_by_counting(case: &Case, omegas: &[f64]) -> Option<Limit> {
         if count_growing(case, middle) == 0 { low = middle } else { high = middle }
     }
     // The frequency is that at which the determinant comes closest to zero.
-    let size = |omega: &f64| loops.closed(C64::new(0.0, *omega), high).determinant().norm();
+    let size = |omega: &f64| loops.closed(C64::new(0.0, *omega), high).dense().determinant().norm();
     let omega = omegas.iter().copied().min_by(|a, b| size(a).total_cmp(&size(b)))?;
     Some(
         refine_limit(loops, Limit { factor: high, omega_rad_s: omega }, &general(loops))

@@ -1,7 +1,7 @@
 //! The closed loops of a group of controllers as one matrix of a complex frequency.
 //!
 //! **Equation** outputs `u = C(s) y`, readings `y = P(s) u`, `P_ij = S_i(s) G_ij A_j(s)` with the gains G of the
-//! network, the lags A of the actuators and the sensors S (`chain.rs`); the loops have a mode wherever
+//! network, the lags A of the actuators and the sensors S (`chains.rs`); the loops have a mode wherever
 //! `det(1 + k L(s)) = 0`, `L = -C P`, k = 1; with k all controllers of the group are scaled together. Sampled
 //! controllers of one interval h: the same in `z = exp(s h)`, exact at the samples. Water with inertia: G in parts
 //! behind lags (`water.rs`). An output u_j that is the set point of another controller: that answers with `F(s) u_j`,
@@ -9,8 +9,8 @@
 //! **Sources** `skogestad2005`.
 
 use super::answers::Link;
-use super::chain::{Chains, Seen};
-use super::elimination::Eliminated;
+use super::chains::{Chains, Seen};
+use super::elimination::{Eliminated, Rows, more};
 use super::law::Law;
 use super::response::StepResponse;
 use super::water::Late;
@@ -36,6 +36,7 @@ pub(super) struct Between {
 /// Gains with the chains that they have.
 struct Way {
     chains: Chains,
+    /// Of outputs (rows) on measured values (columns), so that those on one value lie together.
     gains: DMatrix<f64>,
 }
 
@@ -64,9 +65,10 @@ impl Loops {
         let owner = laws.iter().enumerate().flat_map(|(i, law)| vec![i; law.c.nrows()]).collect();
         let chains = |water_lag_s| Chains::new(&lags_s, &seen, water_lag_s, interval_s);
         let at_once = late.iter().fold(gains.clone(), |rest, late| rest - &late.gains);
-        let mut ways = vec![Way { chains: chains(0.0), gains: at_once }];
-        let late = late.into_iter();
-        ways.extend(late.map(|late| Way { chains: chains(late.lag_s), gains: late.gains }));
+        let way =
+            |lag_s, gains: DMatrix<f64>| Way { chains: chains(lag_s), gains: gains.transpose() };
+        let mut ways = vec![way(0.0, at_once)];
+        ways.extend(late.into_iter().map(|late| way(late.lag_s, late.gains)));
         let mut loops = Self { laws, gains, ways, links, interval_s, slow, owner, uniform: None };
         loops.uniform = loops.uniform_gains();
         loops
@@ -109,42 +111,36 @@ impl Loops {
     }
 
     /// `L(s)`.
-    pub fn matrix(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
+    pub fn matrix(&self, s: Complex<f64>) -> Rows {
         let n = self.len();
         let mut plant = self.chains().plant(s, &self.ways[0].gains);
         for way in &self.ways[1..] {
-            plant += way.chains.plant(s, &way.gains);
+            let late = way.chains.plant(s, &way.gains);
+            (0..late.rows()).for_each(|i| more(one(), late.row(i), plant.row_mut(i)));
         }
         for (i, j, response) in &self.slow {
-            plant[(*i, *j)] = self.slow_answer(*i, *j, response, s);
+            plant.set(*i, *j, self.slow_answer(*i, *j, response, s));
         }
         let variable = self.chains().variable(s);
-        if self.links.is_empty()
-            && self.laws.iter().all(|law| law.c.nrows() == 1 && law.b.ncols() == 1)
-        {
-            let laws: Vec<_> =
-                self.laws.iter().map(|law| -law.transfer(variable)[(0, 0)]).collect();
-            for mut column in plant.column_iter_mut() {
-                column.iter_mut().zip(&laws).for_each(|(entry, law)| *entry *= law);
-            }
-            return plant;
-        }
         let (mut row, mut seen) = (0, 0);
-        let mut matrix = DMatrix::zeros(n, n);
+        let mut matrix = Rows::zeros(n, n);
         for law in &self.laws {
-            let transfer = -law.transfer(variable);
-            let (n_out, n_in) = transfer.shape();
-            let through = transfer * plant.rows(seen, n_in);
-            matrix.rows_mut(row, n_out).copy_from(&through);
-            row += n_out;
-            seen += n_in;
+            let transfer = law.transfer(variable);
+            for (value, column) in transfer.column_iter().enumerate() {
+                for (output, entry) in column.iter().enumerate() {
+                    more(-entry, plant.row(seen + value), matrix.row_mut(row + output));
+                }
+            }
+            row += transfer.nrows();
+            seen += transfer.ncols();
         }
         for link in &self.links {
             let answer = self.laws[link.to].follows(variable, link.set_point);
             let late = if self.interval_s > 0.0 && link.from > link.to { variable } else { one() };
             let first = self.owner.iter().position(|owner| *owner == link.to).unwrap_or(0);
             for (k, entry) in answer.iter().enumerate() {
-                matrix[(first + k, link.output)] -= entry / late;
+                let (i, j) = (first + k, link.output);
+                matrix.set(i, j, matrix.at(i, j) - entry / late);
             }
         }
         matrix
@@ -163,7 +159,7 @@ impl Loops {
                 Some((_, _, response)) => self.slow_answer(value, i, response, s),
                 None => {
                     let ways = self.ways.iter();
-                    ways.map(|way| way.chains.one(value, i, s) * way.gains[(value, i)]).sum()
+                    ways.map(|way| way.chains.one(value, i, s) * way.gains[(i, value)]).sum()
                 }
             }
         };
@@ -186,12 +182,8 @@ impl Loops {
     }
 
     /// `1 + k L(s)`.
-    pub fn closed(&self, s: Complex<f64>, factor: f64) -> DMatrix<Complex<f64>> {
-        let mut closed = self.matrix(s) * Complex::new(factor, 0.0);
-        for i in 0..closed.nrows() {
-            closed[(i, i)] += 1.0;
-        }
-        closed
+    pub fn closed(&self, s: Complex<f64>, factor: f64) -> Rows {
+        self.matrix(s).closed(factor)
     }
 
     /// Times between which its frequencies lie, s: the sum of all lags of the slowest chain, the fastest.
@@ -226,20 +218,20 @@ impl Loops {
         // Near a root the inverse is the residue over the distance: right times left vector.
         let beside = s + Complex::new(1e-5 * s.norm(), 0.0);
         let n = self.len();
-        let Some(closed) = Eliminated::of(&self.closed(beside, 1.0)) else {
+        let Some(closed) = Eliminated::of(self.closed(beside, 1.0)) else {
             return (vec![0.0; self.laws.len()], vec![0.0; n]);
         };
         let inverse = closed.inverse();
         let mut shares = vec![0.0; self.laws.len()];
-        let total: f64 = (0..n).map(|i| inverse[(i, i)].norm()).sum();
+        let total: f64 = (0..n).map(|i| inverse.at(i, i).norm()).sum();
         for i in 0..n {
-            shares[self.owner[i]] += inverse[(i, i)].norm() / total;
+            shares[self.owner[i]] += inverse.at(i, i).norm() / total;
         }
         let column =
-            (0..n).max_by(|i, k| inverse[(*i, *i)].norm().total_cmp(&inverse[(*k, *k)].norm()));
+            (0..n).max_by(|i, k| inverse.at(*i, *i).norm().total_cmp(&inverse.at(*k, *k).norm()));
         let column = column.unwrap_or(0);
-        let reference = inverse[(column, column)];
-        let phases = (0..n).map(|i| (inverse[(i, column)] / reference).arg()).collect();
+        let reference = inverse.at(column, column);
+        let phases = (0..n).map(|i| (inverse.at(i, column) / reference).arg()).collect();
         (shares, phases)
     }
 

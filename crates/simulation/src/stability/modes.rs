@@ -9,7 +9,7 @@
 //! (integrators) or in the left half plane. **Sources** `skogestad2005` (generalised Nyquist criterion).
 
 use super::count::{Case, count_growing};
-use super::elimination::Eliminated;
+use super::elimination::{Eliminated, Rows};
 use super::limit::{limit_by_counting, limit_of_modes};
 use super::loops::Loops;
 use super::secant::secant;
@@ -231,40 +231,44 @@ fn together<'a>(loops: &'a Loops, omegas: &[f64]) -> Vec<Scalar<'a>> {
     let (_, slowest) = loops.times_s();
     let at = C64::new(0.0, 2.0 / slowest);
     let matrix = loops.matrix(at);
-    let eigenvalues = matrix.clone().eigenvalues().unwrap_or_else(|| DVector::zeros(0));
-    let on_grid: Vec<DMatrix<C64>> =
+    let eigenvalues = matrix.dense().eigenvalues().unwrap_or_else(|| DVector::zeros(0));
+    let on_grid: Vec<Rows> =
         omegas.iter().map(|omega| loops.matrix(C64::new(0.0, *omega))).collect();
     let mut scalars = Vec::new();
     for lambda in eigenvalues.iter().filter(|lambda| lambda.norm() > 0.0) {
         let shift = *lambda * C64::new(1.0 + 1e-7, 1e-7);
-        let moved = &matrix - DMatrix::from_diagonal_element(n, n, shift);
-        let right = inverse_iteration(&moved);
-        let left = inverse_iteration(&moved.adjoint());
+        let mut moved = matrix.clone();
+        (0..n).for_each(|i| moved.set(i, i, moved.at(i, i) - shift));
+        let (left, right) = inverse_iteration(moved);
         let norm = left.dotc(&right);
         if norm.norm() < 1e-12 {
             continue;
         }
-        let through = |matrix: &DMatrix<C64>| left.dotc(&(matrix * &right)) / norm;
+        let through = |matrix: &Rows| matrix.between(&left, &right) / norm;
         let values = on_grid.iter().map(through).collect();
         let probes = (left.clone(), right.clone());
-        let f = Box::new(move |s: C64| left.dotc(&(loops.matrix(s) * &right)) / norm);
+        let f = Box::new(move |s: C64| loops.matrix(s).between(&left, &right) / norm);
         scalars.push(Scalar { f, times: 1, values, exact: false, probes });
     }
     scalars
 }
 
-fn inverse_iteration(matrix: &DMatrix<C64>) -> DVector<C64> {
-    let n = matrix.nrows();
-    let mut vector = probe(n, 1);
-    let Some(eliminated) = Eliminated::of(matrix) else { return vector };
-    for _ in 0..3 {
-        let next = eliminated.solve(&vector);
-        let norm = next.norm();
-        if norm.is_finite() && norm > 0.0 {
-            vector = next.unscale(norm);
+/// The left and the right vector that a nearly singular matrix answers most.
+fn inverse_iteration(matrix: Rows) -> Probes {
+    let start = probe(matrix.columns(), 1);
+    let Some(eliminated) = Eliminated::of(matrix) else { return (start.clone(), start) };
+    let most = |solve: &dyn Fn(&DVector<C64>) -> DVector<C64>| {
+        let mut vector = start.clone();
+        for _ in 0..3 {
+            let next = solve(&vector);
+            let norm = next.norm();
+            if norm.is_finite() && norm > 0.0 {
+                vector = next.unscale(norm);
+            }
         }
-    }
-    vector
+        vector
+    };
+    (most(&|vector| eliminated.solve_adjoint(vector)), most(&|vector| eliminated.solve(vector)))
 }
 
 /// A vector that is orthogonal to no mode but by bad luck.
@@ -351,7 +355,7 @@ fn follow(scalar: &Scalar, limit: Limit) -> Option<C64> {
 
 /// `1/(c^H (1 + k L)^-1 b)`.
 pub(super) fn resolvent(loops: &Loops, s: C64, factor: f64, (c, b): &Probes) -> C64 {
-    match Eliminated::of(&loops.closed(s, factor)) {
+    match Eliminated::of(loops.closed(s, factor)) {
         Some(closed) => c.dotc(&closed.solve(b)).inv(),
         None => C64::new(0.0, 0.0),
     }

@@ -7,7 +7,7 @@
 //! **Sources** `astrom2011` (lifting of multirate systems).
 
 use super::answers::Link;
-use super::chain::Seen;
+use super::chains::Seen;
 use super::law::Law;
 use super::modes::{Found, Limit, Root};
 use nalgebra::{Complex, DMatrix, DVector};
