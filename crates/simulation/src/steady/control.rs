@@ -4,8 +4,9 @@
 //! **Numerics** Newton on the outputs of all controllers. The Jacobian follows from the gains of the network
 //! where only water is in the loops, otherwise from differences of settled states. An actuator behind a closed
 //! check valve has no gain, so that a start may fail where another one does not. The first start is that of a
-//! network in which pumps hold their own flow, and what else is tracked is prescribed for a free pump. A step is at most a
-//! share of each output's range, which halves where the balances became worse.
+//! network in which pumps hold their own flow, and what else is tracked is prescribed for a free pump. What a step takes to
+//! its limit is set there before the others step. A step is at most a share of each output's range, which halves where the
+//! balances became worse.
 
 use super::settle_temperatures;
 use crate::channels::{self, Source};
@@ -223,6 +224,34 @@ fn prescribed(simulation: &Simulation, outputs: &[Output]) -> Vec<Option<f64>> {
     free.into_iter().map(|edge| edge.filter(|_| solved).map(position)).collect()
 }
 
+/// The Newton step of outputs that have so much room below and above: what would pass its limit furthest goes to it, and
+/// the others step with it there, until none passes. Without that, an actuator that can hardly do anything, like a pump
+/// that is held shut at nearly full speed, throws all others off.
+fn within(
+    jacobian: &DMatrix<f64>,
+    missing: &DVector<f64>,
+    room: &[(f64, f64)],
+) -> Option<DVector<f64>> {
+    let mut change = DVector::zeros(room.len());
+    let mut open: Vec<usize> = (0..room.len()).collect();
+    let mut left = missing.clone();
+    while !open.is_empty() {
+        let part = DMatrix::from_fn(open.len(), open.len(), |i, j| jacobian[(open[i], open[j])]);
+        let rhs = DVector::from_fn(open.len(), |i, _| left[open[i]]);
+        let step = part.lu().solve(&rhs)?;
+        let beyond = |k: usize| (room[open[k]].0 - step[k]).max(step[k] - room[open[k]].1);
+        let furthest = (0..open.len()).max_by(|&k, &l| beyond(k).total_cmp(&beyond(l)))?;
+        if beyond(furthest) <= 0.0 {
+            open.iter().zip(step.iter()).for_each(|(&i, step)| change[i] = *step);
+            break;
+        }
+        let i = open.remove(furthest);
+        change[i] = step[furthest].clamp(room[i].0, room[i].1);
+        left -= jacobian.column(i) * change[i];
+    }
+    Some(change)
+}
+
 fn settle_from(
     simulation: &mut Simulation,
     outputs: &[Output],
@@ -276,8 +305,12 @@ fn settle_from(
                 .clamp(min, max);
             continue;
         }
-        let rhs = DVector::from_iterator(free.len(), free.iter().map(|&i| -missed[i].miss));
-        let Some(change) = jacobian.lu().solve(&rhs) else {
+        let room: Vec<(f64, f64)> = free
+            .iter()
+            .map(|&i| (outputs[i].min - values[i], outputs[i].max - values[i]))
+            .collect();
+        let missing = DVector::from_iterator(free.len(), free.iter().map(|&i| -missed[i].miss));
+        let Some(change) = within(&jacobian, &missing, &room) else {
             return Err(without_effect(free[0]));
         };
         for (k, &i) in free.iter().enumerate() {
@@ -297,4 +330,24 @@ fn settle_from(
             missed[worst].miss
         ),
     })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outputs_at_a_limit_leave_the_rest_to_the_others() {
+        // 0.001 x + y = 1 and y = 0.5 want x = 500, which has room for 1: then y = 0.5 alone.
+        let jacobian = DMatrix::from_row_slice(2, 2, &[1e-3, 1.0, 0.0, 1.0]);
+        let missing = DVector::from_column_slice(&[1.0, 0.5]);
+        let all = within(&jacobian, &missing, &[(-1e3, 1e3); 2]).unwrap();
+        assert!((all - DVector::from_column_slice(&[500.0, 0.5])).norm() < 1e-9);
+        // 2 x + y = 3, x + 2 y = 0 want x = 2, y = -1; with x at 1 the second has y = -0.5.
+        let jacobian = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
+        let missing = DVector::from_column_slice(&[3.0, 0.0]);
+        let some = within(&jacobian, &missing, &[(-1.0, 1.0), (-2.0, 2.0)]).unwrap();
+        assert!((some - DVector::from_column_slice(&[1.0, -0.5])).norm() < 1e-12);
+    }
 }
