@@ -2,7 +2,7 @@
 //!
 //! **Equation** minimise `F = sum e^2 + sum ((x - mean)/sd)^2` over the coordinates `x`, by Levenberg-Marquardt
 //! with forward differences, in between corrected by Broyden's rule. `e` are the residuals
-//! `z = (y - yhat)/sigma`, whitened ([`Noise`]). The logarithm of the evidence (Laplace) is
+//! `z = (y - yhat)/sigma`, whitened, as they count ([`Likelihood`]). The logarithm of the evidence (Laplace) is
 //! `-F/2 - log det(I + S J^T J S)/2`, `J` the sensitivities of `e`, `S = diag(sd)`, but for a constant of the data.
 //!
 //! **Numerics** one simulation per unknown and round of sensitivities is what costs. Flaws of compared sensors need none.
@@ -14,8 +14,7 @@
 use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::{Experiment, Simulated};
-use crate::noise::{Gain, Noise, Predicted, Residual, Tails, scale_beside, whitened};
-use crate::significance::squares;
+use crate::likelihood::Likelihood;
 use crate::unknown::{Estimate, Target, Unknown};
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
@@ -32,113 +31,6 @@ pub(crate) const BOUND_SD: f64 = 6.0;
 
 /// Change of all readings with the coordinate of an unknown, SI.
 pub type Slopes = HashMap<Target, Vec<f64>>;
-
-/// What is fitted to: uncertainty of every sample, and the samples that count.
-pub struct Likelihood {
-    /// Standard deviation of every sample, SI.
-    pub sigma: Vec<f64>,
-    /// The same as it was predicted.
-    pub predicted: Vec<f64>,
-    /// Of it what is known well.
-    pub known: Vec<f64>,
-    /// The samples that are fitted.
-    pub fitted: Vec<usize>,
-    /// What a nearly right model leaves behind, by sample; empty: every sample is new.
-    pub filter: Vec<Gain>,
-    /// The same by run and sensor.
-    pub noises: HashMap<(usize, usize), Noise>,
-    /// The likelihood is taken to the power of one over this.
-    pub temperature: f64,
-}
-
-impl Likelihood {
-    /// To these samples, every one new.
-    pub fn new(sigma: Vec<f64>, fitted: Vec<usize>) -> Self {
-        let (predicted, known) = (sigma.clone(), sigma.clone());
-        let (filter, noises) = (Vec::new(), HashMap::new());
-        Self { sigma, predicted, known, fitted, filter, noises, temperature: 1.0 }
-    }
-
-    /// Residuals over sigma of all samples.
-    pub fn z(&self, experiment: &Experiment, readings: &[f64]) -> Vec<f64> {
-        let samples = experiment.samples.iter().zip(readings).zip(&self.sigma);
-        samples.map(|((sample, y), sigma)| (sample.value - y) / sigma).collect()
-    }
-
-    /// Root mean square of the residuals over sigma of some samples, with what lies far off alone counted less ([`squares`]).
-    pub fn rms(&self, experiment: &Experiment, readings: &[f64], samples: &[usize]) -> f64 {
-        let group = |i: usize| (experiment.samples[i].run, experiment.samples[i].sensor);
-        let z = |&i: &usize| (experiment.samples[i].value - readings[i]) / self.sigma[i];
-        let of_group = |own: &[usize]| -> f64 {
-            squares(&own.iter().map(z).collect::<Vec<f64>>()).iter().sum()
-        };
-        let groups = samples.chunk_by(|&i, &j| group(i) == group(j));
-        (groups.map(of_group).sum::<f64>() / samples.len().max(1) as f64).sqrt()
-    }
-
-    /// Residuals over sigma, or their sensitivities, of all fitted samples, whitened.
-    pub fn whitened(&self, z: impl Fn(usize) -> f64) -> DVector<f64> {
-        let values = self.fitted.iter().map(|&i| z(i));
-        if self.filter.is_empty() {
-            return DVector::from_iterator(self.fitted.len(), values);
-        }
-        let values = self.fitted.iter().map(|&i| z(i) * self.sigma[i]);
-        DVector::from_iterator(self.fitted.len(), whitened(&self.filter, values))
-    }
-
-    /// Whitened residuals as their squares count, and the slopes of these by the residuals.
-    pub fn counted(&self, e: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
-        let cold = 1.0 / self.temperature.sqrt();
-        let tails = |k: usize| self.filter.get(k).map_or(Tails::Normal, |gain| gain.tails);
-        let both = e.iter().enumerate().map(|(k, &e)| tails(k).counted(e));
-        let (values, slopes): (Vec<f64>, Vec<f64>) =
-            both.map(|(y, s)| (cold * y, cold * s)).unzip();
-        (DVector::from_vec(values), DVector::from_vec(slopes))
-    }
-
-    /// Scales what is predicted of each sensor beside what is known well by what these readings leave behind.
-    pub fn rescale(&mut self, experiment: &Experiment, readings: &[f64]) {
-        for sensor in 0..experiment.sensors.sensor.len() {
-            let own = |i: &usize| experiment.samples[*i].sensor == sensor;
-            let of = |i: usize| Predicted {
-                value: experiment.samples[i].value - readings[i],
-                sigma: self.predicted[i],
-                known: self.known[i],
-            };
-            let fitted = self.fitted.iter().copied().filter(own);
-            let scale = scale_beside(&fitted.map(of).collect::<Vec<_>>());
-            for i in (0..experiment.samples.len()).filter(own) {
-                self.sigma[i] = of(i).scaled(scale);
-            }
-        }
-    }
-
-    /// Takes what these readings leave behind for what every nearly right model does.
-    pub fn learn(&mut self, experiment: &Experiment, readings: &[f64]) {
-        self.forget();
-        self.rescale(experiment, readings);
-        let of = |&i: &usize| {
-            let sample = &experiment.samples[i];
-            let (value, sigma) = (sample.value - readings[i], self.sigma[i]);
-            ((sample.run, sample.sensor), Residual { time_s: sample.time_s, value, sigma })
-        };
-        let all: Vec<_> = self.fitted.iter().map(of).collect();
-        for group in all.chunk_by(|a, b| a.0 == b.0) {
-            let residuals: Vec<Residual> = group.iter().map(|(_, r)| *r).collect();
-            let noise = Noise::of(&residuals);
-            self.filter.extend(noise.gains(&residuals));
-            self.noises.insert(group[0].0, noise);
-        }
-    }
-
-    /// Takes every sample for new again, and for as uncertain as was predicted.
-    pub fn forget(&mut self) {
-        self.sigma.clone_from(&self.predicted);
-        self.filter.clear();
-        self.noises.clear();
-        self.temperature = 1.0;
-    }
-}
 
 /// A fit.
 #[derive(Debug, Clone)]

@@ -20,6 +20,7 @@ pub mod fit;
 pub mod gap;
 mod grid;
 mod inputs;
+pub mod likelihood;
 pub mod next;
 pub mod noise;
 pub mod profile;

@@ -9,7 +9,8 @@
 //! **Sources** Raue et al. 2009 (key `raue2009`).
 
 use crate::experiment::Experiment;
-use crate::fit::{BOUND_SD, Care, Fit, Likelihood, fit};
+use crate::fit::{BOUND_SD, Care, Fit, fit};
+use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
 
 /// Rise of the objective at the ends of the interval.

@@ -15,7 +15,8 @@
 use crate::catalogue::Candidate;
 use crate::cores::on_all_cores;
 use crate::experiment::Experiment;
-use crate::fit::{Fit, Likelihood, curvature};
+use crate::fit::{Fit, curvature};
+use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashSet;

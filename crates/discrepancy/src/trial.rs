@@ -4,7 +4,8 @@ use crate::catalogue::Candidate;
 use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::Experiment;
-use crate::fit::{Care, Fit, Likelihood, Slopes, fit};
+use crate::fit::{Care, Fit, Slopes, fit};
+use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
 
 /// Candidates with their fit.

@@ -23,9 +23,10 @@ mod flow;
 mod load;
 pub mod map;
 mod metal;
+mod plan;
 pub mod stirling;
 
-use crate::burner::{Burner, BurnerState, Command, Means, Steady};
+use crate::burner::{Burner, BurnerState};
 use crate::efficiency_factor::EfficiencyFactor;
 use crate::thermal_unit::{
     Exchange, Flag, ThermalUnit, UnitInput, UnitOutput, UnitPort, capacity_w_k,
@@ -34,7 +35,7 @@ use anergy_core::medium::{Medium, ZERO_CELSIUS_K};
 use anergy_core::port::{Outlet, PortFlow, PortRequest};
 use anergy_core::signal::Signals;
 use engine::EngineContent;
-use flow::{FlowRule, FlowWish};
+use flow::FlowRule;
 pub use flow::{GeneratorCommand, GeneratorFlow};
 use map::SteadyMap;
 use metal::Metal;
@@ -100,97 +101,7 @@ const SUPPLY_SET: usize = 2;
 const AUX: usize = 3;
 const ROD: usize = 4;
 
-/// What the unit does in a step.
-struct Plan {
-    main: Means,
-    aux: Means,
-    rod_w: f64,
-    next_main: BurnerState,
-    next_aux: BurnerState,
-    tripped: bool,
-    overshot: bool,
-    /// Whether the pump of an engine with a content runs.
-    pump: bool,
-    m_flow_kg_s: f64,
-    /// Heat from the metal into the water, W.
-    metal_w: f64,
-}
-
-impl Plan {
-    /// Heat of fuel and electricity, W.
-    fn heat_w(&self) -> f64 {
-        self.main.heat_w + self.aux.heat_w + self.rod_w
-    }
-}
-
 impl Combustion {
-    fn plan(&self, signals: &Signals<'_>, state: &[f64]) -> Plan {
-        let return_k = state[RETURN_K];
-        let limits = &self.limits;
-        let inside_k = if state[TRIPPED] != 0.0 { limits.restart_k } else { 0.0 };
-        let enabled = signals.get(ENABLE) >= 0.5;
-        let (modulation, overshot) = self.load(signals, state);
-        // One that is off and not asked for does not trip, however warm its water is.
-        let on = BurnerState::read(&state[BURNERS..]).phase.on();
-        let aux = self.aux.is_some() && signals.get(AUX).max(signals.get(ROD)) > 0.0;
-        let asked = enabled && (modulation > 0.0 || on || aux);
-        let tripped = (asked || state[TRIPPED] != 0.0)
-            && (return_k > limits.return_max_k - inside_k
-                || state[SUPPLY_K] > limits.supply_max_k - inside_k);
-        let run = |stage: &Stage, at: usize, modulation: f64| {
-            let mut next = BurnerState::read(&state[at..]);
-            let modulation = if enabled { modulation } else { 0.0 };
-            let command = Command { modulation, tripped };
-            let steady = |modulation| {
-                let map = stage.map.at(modulation, return_k);
-                Steady { fuel_w: map.fuel_w / self.factor.at(modulation), ..map }
-            };
-            let means = stage.burner.run(state[STEP_S], &command, &mut next, steady);
-            (means, next)
-        };
-        let (main, next_main) = run(&self.main, BURNERS, modulation);
-        let (aux, next_aux) = match &self.aux {
-            Some(aux) => run(aux, BURNERS + BurnerState::LEN, signals.get(AUX)),
-            None => (Means::default(), BurnerState::new()),
-        };
-        let rod_w = if self.aux.is_some() && enabled && !tripped {
-            self.rod_rated_w * signals.get(ROD).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let flow_heat_w = main.flow_heat_w + aux.flow_heat_w + rod_w;
-        let wish = FlowWish {
-            heat_w: flow_heat_w,
-            modulation: main.modulation,
-            return_k,
-            supply_set_k: signals.get(SUPPLY_SET),
-            flow: main.flow.max(aux.flow).max(f64::from(u8::from(rod_w > 0.0))),
-        };
-        let pump = self.engine.is_none_or(|engine| {
-            engine.pump(state[self.engine_at()], state[self.engine_at() + 1] != 0.0, &main)
-        });
-        let capacity_w_k = if pump { self.flow.capacity_w_k(&wish) } else { 0.0 };
-        let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
-        let metal_w = self.metal.map_or(0.0, |metal| {
-            let passed = state[self.engine_at() + 1];
-            let m_flow_kg_s = if m_flow_kg_s > 0.0 { m_flow_kg_s } else { passed };
-            let capacity_w_k = self.medium.heat_capacity_j_kg_k * m_flow_kg_s.abs();
-            metal.heat_w(state[self.engine_at()], return_k, capacity_w_k, state[STEP_S])
-        });
-        Plan {
-            main,
-            aux,
-            rod_w,
-            next_main,
-            next_aux,
-            tripped,
-            overshot,
-            pump,
-            m_flow_kg_s,
-            metal_w,
-        }
-    }
-
     /// Where the state of the engine, or of the metal, begins: behind that of the burners.
     fn engine_at(&self) -> usize {
         BURNERS + BurnerState::LEN * if self.aux.is_some() { 2 } else { 1 }
