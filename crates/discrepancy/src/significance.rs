@@ -112,7 +112,7 @@ pub struct Tested {
 }
 
 /// Squares of residuals over sigma in the order of time. One that lies far off alone, as a switch between two readings may leave it,
-/// counts no more than those beside it, or than [`ALONE`].
+/// counts no more than those beside it, or than three.
 pub fn squares(z: &[f64]) -> Vec<f64> {
     let size = |k: Option<usize>| k.and_then(|k| z.get(k)).map_or(0.0, |z| z.abs());
     let of = |(k, z): (usize, &f64)| {
