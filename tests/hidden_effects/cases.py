@@ -16,13 +16,15 @@ import numpy as np
 
 import broken
 from detect import Look, fitted, shifted, slow, still, stratum
-from sensors import JUMPS_AT, ROOT3, draw, measure, spoil
+from sensors import JUMPS_AT, ROOT3, UNKNOWN_LAG_S, draw, measure, spoil
 
 RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
 # Range of the expected gain in log-likelihood that is aimed at.
 STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
 # So much an effect of a sensor is at least, K, and a zero offset over the largest that is looked for: less is within what a class of sensors means.
 SMALLEST, SMALLEST_ZERO = {"S3": 0.6}, 0.3
+# A drift or a jump is at least so many times the largest permissible error: within its class a sensor may drift.
+BEYOND_CLASS = 1.25
 # Nats within which two effects are not told apart, and cosine of their signatures.
 TOGETHER, PARALLEL = 3.0, 0.99
 
@@ -49,9 +51,8 @@ class Draw:
         channels = module.simulate(self.rig, [self.neutral | v for v in variants])
         look = self.look = Look(self.sensors, channels, self.at_s, fitted(module.split(self.rig), self.at_s))
         # Readings may lie anywhere on their inputs.
-        moments = [share * self.rig["every_s"] for share in (0, 1 / 3, 2 / 3)] if getattr(module, "READS", False) else []
-        if moments:
-            look.unread([module.simulate(self.rig | {"as_read_s": at_s}, [self.neutral]) for at_s in moments])
+        moments = [share * self.rig["every_s"] for share in (0, 1 / 3, 2 / 3)]
+        look.unread([module.simulate(self.rig | {"as_read_s": at_s}, [self.neutral]) for at_s in moments])
         for j, s in enumerate(inputs):
             _, _, noise = s.limits(channels[s.truth][0])
             first = 1 + len(tolerances) + 2 * j
@@ -61,8 +62,10 @@ class Draw:
                 mean = np.mean(channels[s.truth][0])
                 look.noisier(look.of(channels, first + 1) / 0.02, np.hypot(noise, s.resolution_si() / 12**0.5) / mean)
         k = 1
-        for _ in tolerances:
-            look.tolerate(look.of(channels, k), 1 / ROOT3)
+        for key, half in tolerances.items():
+            # With what the model declares for its formulas, which nobody draws.
+            formula = getattr(module, "FORMULAS", {}).get(key.split(".")[-1], 0.0)
+            look.tolerate(look.of(channels, k), np.hypot(1.0, formula / max(half, 1e-9)) / ROOT3)
             k += 1
         self.effects = []  # id, component, parameter, neutral, first look, range, variant or None, signature
         for s in inputs:
@@ -86,7 +89,7 @@ class Draw:
             look.tolerate(one, bias / ROOT3)
             look.tolerate(same, gain / ROOT3 / 0.05)
             look.tolerate(look.of_sensor(s, shifted(self.rig["every_s"] / ROOT3)))
-            look.tolerate(look.of_sensor(s, slow(max(s.lag_s, 1.0) * 0.2)), 1 / ROOT3)
+            look.tolerate(look.of_sensor(s, slow(self.lag_s(s))), 1 / ROOT3)
             if s.kind == "k":
                 self.effects.append(("S1", s.column, "bias_k", 0.0, 1.0, (-5, 5), None, one))
                 for parameter, shape in self.shapes():
@@ -131,18 +134,32 @@ class Draw:
         share = np.sqrt(wanted / max(self.look.gain(signature), 1e-9))
         sign = rng.choice([-1, 1]) if lo < zero < hi and id_ not in self.module.ONE_SIDED else 1
         smallest = SMALLEST_ZERO * hi if id_ == "S8" else (SMALLEST | getattr(self.module, "SMALLEST", {})).get(id_, 0.0)
+        if id_ == "S3":
+            sensor = next(s for s in self.sensors if s.column == effect[1])
+            smallest = max(smallest, BEYOND_CLASS * sensor.limits(self.look.channels[sensor.truth][0])[0])
         size = max(share * abs(first - zero), smallest * rng.uniform(1, 1.5))
         return float(np.clip(zero + sign * np.sign(first - zero) * size, lo, hi))
 
+    def lag_s(self, sensor):
+        """Lag that nobody has written down: of the sensor, and of what stands before it."""
+        before_s = getattr(self.module, "outlet_lag_s", lambda *_: 0.0)(self.rig, sensor.column)
+        return float(np.hypot(np.hypot(0.2 * sensor.lag_s, UNKNOWN_LAG_S), before_s))
+
     def gain(self, effect, value):
         gain = self.look.gain(self.seen(effect, value))
-        # A clock is always off by up to an interval, and fronts are no straight lines.
-        return min(gain, 0.5 * (value * ROOT3 / self.rig["every_s"]) ** 2) if effect[0] == "S7" else gain
+        # A clock is always off by up to an interval, a lag by what nobody knows of it, and fronts are no straight lines.
+        if effect[0] not in ("S4", "S7"):
+            return gain
+        usual_s = self.rig["every_s"] if effect[0] == "S7" else self.lag_s(self.sensor(effect[1]))
+        return min(gain, 0.5 * (value * ROOT3 / usual_s) ** 2)
+
+    def sensor(self, column):
+        return next(s for s in self.look.sensors if s.column == column)
 
     def seen(self, effect, value):
         """What it shows at this value."""
         if effect[0] in ("S4", "S7"):
-            sensor = next(s for s in self.look.sensors if s.column == effect[1])
+            sensor = self.sensor(effect[1])
             return self.look.of_sensor(sensor, slow(value) if effect[0] == "S4" else shifted(value))
         return effect[-1] * (value - effect[3]) / (effect[4] - effect[3])
 
@@ -170,7 +187,7 @@ def whole(effect, value, truth, sensors, clocks):
     sensor = next(s for s in sensors if s.column == component)
     own = sensor.draws
     beside = {"bias_k": own["bias"], "offset_kg_s": own["bias"], "offset_m3_s": own["bias"], "gain": value * (own["gain"] - 1),
-              "lag_s": sensor.lag_s * (own["lag"] - 1), "clock_s": clocks[sensor.clock] - clocks["logger"]}
+              "lag_s": own["lag_s"], "clock_s": clocks[sensor.clock] - clocks["logger"]}
     return value + beside.get(parameter, 0.0)
 
 

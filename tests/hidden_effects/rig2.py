@@ -5,7 +5,7 @@
 import numpy as np
 
 import house
-from sensors import SPARE_S, Sensor
+from sensors import SPARE_S, Sensor, as_read, held
 
 NAME = "R2"
 BLOCK_S, BLOCKS = 900.0, 12
@@ -17,6 +17,7 @@ ONE_SIDED = {"T3", "T4", "G4", "H1", "H2", "S4"}
 # So much an effect is at least: less is the tolerance of another unit of the same kind.
 SMALLEST = {"T1": 0.3, "T2": 0.7, "T3": 0.06, "T4": 0.06, "G1": 0.03, "G2": 0.05, "G3": 0.2, "G6": 0.03}
 LAYERS = 60  # of the model
+OUTLET_LAG_S = {True: 5, False: 20}  # of the water and metal of a heat pump, of a boiler: what the model declares
 DENSITY = house.DENSITY
 LITRE_MIN = 1 / 60000.0
 
@@ -99,7 +100,8 @@ def neutral(rig):
 
 
 def program(rig):
-    return {"load_a": rig["loads"]["a"], "load_b": rig["loads"]["b"], "flow": rig["flow"], "t_ret": rig["t_ret"] + 273.15}
+    return {"load_a": held(rig, rig["loads"]["a"]), "load_b": held(rig, rig["loads"]["b"]), "flow": as_read(rig, rig["flow"]),
+            "t_ret": as_read(rig, rig["t_ret"]) + 273.15}
 
 
 def simulate(rig, variants):
@@ -114,15 +116,15 @@ def simulate(rig, variants):
     names = ([f"ts{k + 1}" for k in range(10)] + (["t_hp", "t_high", "power", "m_hp"] if rig["pump"] else
              ["t_small", "t_large", "t_supply", "m_small", "m_large", "fuel_small", "fuel_large", "m_storage", "t_back"]))
     all_ = np.empty((count, len(names), n))
+    inputs = program(rig)
     for row, v in enumerate(variants):
         p = np.array([rated.get(k, 1.0) * v.get(k, 1.0) if k not in ("around_k", "start", "air") else rig["around"] + v["around_k"] if k == "around_k" else rated[k]
                       for k in (PUMP if rig["pump"] else GAS)])
-        flow = np.where(rig["flow"] > 0, rig["flow"] * v["flow"] + v["flow_zero"], 0.0)
-        t_ret = rig["t_ret"] + v["return_k"]
+        flow = np.where(inputs["flow"] > 0, inputs["flow"] * v["flow"] + v["flow_zero"], 0.0)
+        t_ret = inputs["t_ret"] - 273.15 + v["return_k"]
         run = house.heat_pump_house if rig["pump"] else house.two_boilers
-        run(p, flow, t_ret, rig["loads"]["a"], rig["loads"]["b"], shape, all_[row])
+        run(p, flow, t_ret, inputs["load_a"], inputs["load_b"], shape, all_[row])
     out = {name: all_[:, k] + (273.15 if name.startswith("t") else 0.0) for k, name in enumerate(names)}
-    inputs = program(rig)
     return out | {name: np.tile(x, (count, 1)) for name, x in inputs.items()}
 
 
@@ -191,7 +193,7 @@ def model(rig):
     lines = ["format = 1", "[model]", 'name = "house"', "[run]", f'until = "{BLOCK_S * BLOCKS:.0f}s"', 'step = "10s"', 'record = "10s"', f"initial_degc = {start}",
              "[fluid]", 'kind = "constant_water"', f"density_kg_m3 = {DENSITY}", f"heat_capacity_j_kg_k = {house.HEAT_CAPACITY}",
              # What `tolerances` draws (the loss with half a kelvin of 27; 3 % of the mixing by the flow are half of what water conducts), and the metal of a boiler to twice: 4.5 kJ/K over 0.4 kW/K of its flow are 11 s.
-             "[tolerance]", "storage_loss = 0.07", "storage_mixing = 0.5", "efficiency = 0.013", "part_load = 0.01", "start = 0.08", f"outlet_lag_s = {5 if rig['pump'] else 20}",
+             "[tolerance]", "storage_loss = 0.07", "storage_mixing = 0.5", "efficiency = 0.013", "part_load = 0.01", "start = 0.08", f"outlet_lag_s = {OUTLET_LAG_S[rig['pump']]}",
              "[[unit]]", 'id = "storage"', 'kind = "storage"', f"volume_m3 = {rig['volume']}", f"height_m = {rig['height']}", f"layers = {LAYERS}", f"ua_w_k = {rig['ua']}",
              f"ambient_degc = {rig['around']}", f"conductivity_w_m_k = {rig.get('conductivity', 0.644)}", 'buoyancy = "at_once"']
     high, low = layer(18.5), layer(1.5)
@@ -228,6 +230,11 @@ def model(rig):
     lines += ["[[circuit]]", 'id = "storage_pipes"', 'through = ["storage.point"]', 'from = "supply"', 'to = "return"',
               "[[circuit]]", 'id = "heating"', 'through = ["draw"]', 'from = "supply"', 'to = "return"']
     return "\n".join(lines) + "\n"
+
+
+def outlet_lag_s(rig, column):
+    """Lag of the generator that stands before a sensor, as the model declares it."""
+    return OUTLET_LAG_S[rig["pump"]] if column in ("T_hp", "T_small", "T_large") else 0.0
 
 
 def split(rig):

@@ -17,7 +17,7 @@ FIRST_S = 280  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 FLOWS_THROUGH = True  # without storages
-READS = True  # can be driven by what is read of its inputs
+FORMULAS = {"friction": 0.01}  # the model has another formula, which is right to 1 to 2 %
 AS_BUILT = {"P1"}
 ONE_SIDED = {"H4", "P5", "P7", "P8", "P11", "S4"}
 PIPES = [("stub1", "b1", "j1"), ("line12", "j1", "j2"), ("stub2", "b2", "j2"), ("line23", "j2", "j3")]
@@ -229,7 +229,7 @@ def unknown(rig, rng):
 def model(rig):
     lines = ["format = 1", "[model]", 'name = "three houses"', "[run]", f'until = "{BLOCK_S * BLOCKS:.0f}s"', 'step = "5s"', 'record = "10s"',
              f"initial_degc = {rig['start']:.1f}", "[fluid]", 'kind = "water"', "follow_temperature = true", "[ground]", f"temperature_degc = {rig['around']}",
-             "[tolerance]", "length = 0.005", "loss = 0.05", "friction = 0.012", "surroundings_difference_k = 0.5", "pump_head = 0.005"]
+             "[tolerance]", "length = 0.005", "loss = 0.05", "friction = 0.014", "surroundings_difference_k = 0.5", "pump_head = 0.005"]
     for node in ("s1", "s2", "out"):
         lines += ["[[node]]", f'id = "{node}"', 'kind = "pressure_boundary"', "pressure_bar = 1.5", f"temperature_degc = {rig['start']:.1f}"]
     for node in ("a1", "b1", "a2", "b2", "j1", "j2", "j3"):

@@ -11,6 +11,8 @@ UNITS = {"degC": (1.0, -273.15), "K": (1.0, 0.0), "kg_h": (3600.0, 0.0), "l_h": 
          "kW": (1e-3, 0.0), "W": (1.0, 0.0), "1": (1.0, 0.0), "percent": (100.0, 0.0)}
 # Share of a run after which a sensor jumps.
 JUMPS_AT = 0.42
+# No data sheet says how slow a sensor is in its pocket: up to so much more than what is known, s.
+UNKNOWN_LAG_S = 3.0
 # Seconds that truths go on after the last reading.
 SPARE_S = 120
 # Resolution, lag.
@@ -92,6 +94,15 @@ def as_read(rig, y):
     return np.interp(t, at_s, np.interp(at_s, t, y))
 
 
+def held(rig, y):
+    """The same of a command, which is one or the other: that of the nearest reading."""
+    if "as_read_s" not in rig:
+        return y
+    t = np.arange(y.size)
+    at_s = rig["as_read_s"] + rig["every_s"] * np.round((t - rig["as_read_s"]) / rig["every_s"])
+    return y[np.clip(at_s, 0, y.size - 1).astype(int)]
+
+
 def lagged(y, tau):
     """First order, samples of 1 s."""
     if tau <= 0:
@@ -124,13 +135,13 @@ def draw(sensor, y, rng, edge):
     """Offset and gain error within the class: anywhere, or at its edge."""
     bias, gain, _ = sensor.limits(y)
     within = (lambda: rng.choice([-1, 1]) * rng.uniform(0.9, 1.0)) if edge else (lambda: rng.uniform(-0.6, 0.6))
-    sensor.draws = {"bias": bias * within(), "gain": 1 + gain * within(), "lag": 1 + 0.2 * rng.uniform(-1, 1)}
+    sensor.draws = {"bias": bias * within(), "gain": 1 + gain * within(), "lag_s": 0.2 * sensor.lag_s * rng.uniform(-1, 1) + rng.uniform(0, UNKNOWN_LAG_S)}
 
 
 def measure(sensor, y, at_s, rng, clock_s=0.0, effect=None):
     """Readings in the unit of the sensor at nominal times `at_s` of true values `y` of every second from 0 on."""
     effect = effect or {}
-    tau = sensor.lag_s * sensor.draws["lag"] + effect.get("lag_s", 0.0)
+    tau = sensor.lag_s + sensor.draws["lag_s"] + effect.get("lag_s", 0.0)
     behind = lagged(y, tau)
     times = at_s + rng.uniform(-1, 1, at_s.size) + clock_s + effect.get("clock_s", 0.0)
     x = np.interp(times, np.arange(y.size), behind)

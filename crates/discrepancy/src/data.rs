@@ -156,6 +156,10 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
     }
     for run in &mut runs {
         for (track, sensor) in run.tracks.iter_mut().zip(&sensors.sensor) {
+            if sensor.role == Role::Input && sensor.si() == "1" {
+                *track = at_once(track);
+                continue;
+            }
             let resolution = sensor.difference_to_si(sensor.quantisation).abs();
             let (least, most) = match sensor.si().as_str() {
                 "k" => (JUMP_K, usize::MAX),
@@ -214,9 +218,77 @@ fn without_held(track: &Track, resolution: f64, least: f64, most: usize) -> Trac
     kept
 }
 
+/// A level holds where readings differ by no more than this share of a switch.
+const HOLDS: f64 = 0.1;
+/// A command below this share of its largest reading is off.
+const OFF: f64 = 0.01;
+/// A command that was read while it was switched was so within this time around its reading, s.
+const WHILE_S: f64 = 1.0;
+
+/// A command goes in ramps where more than this share of its switches was read on their way.
+const RAMPS: f64 = 0.25;
+
+/// A command that goes from a level to nothing or back is switched at once: a single reading between the two was taken meanwhile. Where
+/// that happens too often for chance, it goes in ramps (the speed of a pump), and stays as it is.
+fn at_once(track: &Track) -> Track {
+    let (t, y) = (&track.time_s, &track.value);
+    let largest = y.iter().fold(0.0_f64, |most, y| most.max(*y));
+    let is_off = |i: usize| y[i] <= OFF * largest;
+    let holds = |i: usize, j: usize| (y[i] - y[j]).abs() <= HOLDS * y[i].abs();
+    let between = |i: usize, level: usize| {
+        let share = y[i] / y[level];
+        !is_off(i) && share < 1.0 - HOLDS
+    };
+    let passes = |i: usize| {
+        let inner =
+            i > 0 && i + 1 < y.len() && t[i] - t[i - 1] > WHILE_S && t[i + 1] - t[i] > WHILE_S;
+        let off = || i > 1 && is_off(i + 1) && holds(i - 1, i - 2) && between(i, i - 1);
+        let on = || i + 2 < y.len() && is_off(i - 1) && holds(i + 1, i + 2) && between(i, i + 1);
+        inner && (off() || on())
+    };
+    let switches = (1..y.len()).filter(|&i| is_off(i) != is_off(i - 1)).count();
+    let passing = (0..y.len()).filter(|&i| passes(i)).count();
+    if passing as f64 > RAMPS * switches as f64 {
+        return track.clone();
+    }
+    let mut switched = Track { time_s: Vec::new(), value: Vec::new() };
+    for i in 0..y.len() {
+        let readings: &[(f64, f64)] = match passes(i) {
+            true => &[(t[i] - 0.5 * WHILE_S, y[i - 1]), (t[i] + 0.5 * WHILE_S, y[i + 1])],
+            false => &[(t[i], y[i])],
+        };
+        for (time_s, value) in readings {
+            switched.time_s.push(*time_s);
+            switched.value.push(*value);
+        }
+    }
+    switched
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_command_read_while_it_was_switched_is_off_from_then_on() {
+        let track = |value: &[f64]| Track {
+            time_s: (0..value.len()).map(|i| 10.0 * i as f64).collect(),
+            value: value.to_vec(),
+        };
+        // Read at 0.05 at 20 s, once in four times.
+        let switched = at_once(&track(&[0.8, 0.8, 0.05, 0.0, 0.6, 0.6, 0.0, 0.4]));
+        assert_eq!(switched.time_s, [0.0, 10.0, 19.5, 20.5, 30.0, 40.0, 50.0, 60.0, 70.0]);
+        assert_eq!(switched.value, [0.8, 0.8, 0.8, 0.0, 0.0, 0.6, 0.6, 0.0, 0.4]);
+        // A ramp, a lower level, one that was read at once, and one that was read on its way each time stay.
+        for plain in [
+            &[0.8, 0.6, 0.4, 0.2, 0.0, 0.0],
+            &[0.8, 0.8, 0.4, 0.4, 0.0, 0.0],
+            &[0.8, 0.8, 0.8, 0.0, 0.0, 0.8],
+            &[0.8, 0.8, 0.1, 0.0, 0.0, 0.0],
+        ] {
+            assert_eq!(at_once(&track(plain)), track(plain));
+        }
+    }
 
     const SENSORS: &str =
         "[[sensor]]\ncolumn = \"T\"\nsignal = \"b.t_k\"\nunit = \"degC\"\nrole = \"compare\"\n";

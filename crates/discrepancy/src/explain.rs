@@ -65,7 +65,8 @@ pub struct Finding {
     pub beyond: f64,
     /// How far it takes what else is uncertain of the same sensor from the middle of its range, standard deviations.
     pub takes_along: f64,
-    /// Whether its quantity is a tolerance that is fitted without it too.
+    /// Whether tolerances that are fitted without it too can stand for it: its own quantity is one, or most of its evidence is that
+    /// others are strained less.
     pub tolerated: bool,
     /// Whether it is no more than the tolerance of its quantity: a sensor that drifts within its class.
     pub within: bool,

@@ -171,7 +171,7 @@ fn switched_at(experiment: &Experiment, later: f64) -> Option<Experiment> {
     (!commands.is_empty()).then_some(other)
 }
 
-/// A command or a flow, switched on and off later than in the middle between two readings, by these shares of their interval; one that
+/// A command or a flow, switched on and off later than in the middle between two readings, by these shares of the time between them; one that
 /// was read on its way moved when it was read.
 fn switched(track: &Track, mut later: impl FnMut() -> f64) -> Track {
     let usual_s = interval_s(track);
@@ -181,7 +181,7 @@ fn switched(track: &Track, mut later: impl FnMut() -> f64) -> Track {
             (track.value[i] == 0.0) != (track.value[i - 1] == 0.0) && !on_its_way(&track.value, i);
         if switches && track.time_s[i] - track.time_s[i - 1] < GAP * usual_s {
             // Both readings beside it: the order stays.
-            let moved_s = usual_s * later();
+            let moved_s = (track.time_s[i] - track.time_s[i - 1]) * later();
             moved.time_s[i - 1] = track.time_s[i - 1] + moved_s;
             moved.time_s[i] = track.time_s[i] + moved_s;
         }
@@ -218,10 +218,10 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
     let switches = |i: usize| {
         kind == Kind::Command && (i.saturating_sub(1)..=(i + 1).min(y.len() - 1)).any(is_off)
     };
-    // Whether it is off at the next reading, from one moment to the other.
-    let stops = |i: usize| {
+    // Whether it is off at one of a reading and the next, from one moment to the other.
+    let jumps = |i: usize| {
         let next = (i + 1).min(y.len() - 1);
-        is_off(next) && (kind == Kind::Command || !on_its_way(y, next))
+        is_off(i) != is_off(next) && (kind == Kind::Command || !on_its_way(y, next))
     };
     // How far a reading lies from the straight line between its neighbours: so much may lie between two readings.
     let bent = |i: usize| {
@@ -251,7 +251,12 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
                 drawn.time_s.push(t[i] + share * gap_s);
                 drawn.value.push(if is_flow && forward { bridge.max(0.0) } else { bridge });
             }
-        } else if after > i && !off && !stops(i) {
+        } else if after > i && is_flow && off != is_off(after) && !jumps(i) {
+            // Between nothing and a reading on its way it may be one or the other for most of the time.
+            let middle = 0.5 + normal() / 12.0_f64.sqrt();
+            drawn.time_s.push(0.5 * (t[i] + t[after]));
+            drawn.value.push(middle.clamp(0.0, 1.0) * (y[i] + y[after]));
+        } else if after > i && !off && !jumps(i) {
             let middle_s = 0.5 * (t[i] + t[after]);
             let (middle, share) = if kind == Kind::Temperature {
                 (track.smooth_at(middle_s, usually), BENT.1)

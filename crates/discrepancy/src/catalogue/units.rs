@@ -72,7 +72,8 @@ const MEASURED_W: f64 = 14_000.0;
 pub(super) fn at_outlet(experiment: &Experiment, sensor: &Sensor) -> bool {
     let mut units = experiment.model.units.iter();
     let own = units.find(|unit| {
-        sensor.signal.strip_prefix(unit.id.as_str()).is_some_and(|rest| rest == ".t_supply_k")
+        let of_unit = sensor.signal.strip_prefix(unit.id.as_str());
+        of_unit.is_some_and(|rest| [".t_supply_k", ".water.t_out_k"].contains(&rest))
     });
     own.is_some_and(|unit| is_generator(unit.params.kind()) && unit.params.kind() != BOILER)
 }

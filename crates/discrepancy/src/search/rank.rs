@@ -37,6 +37,12 @@ impl Search<'_> {
         // That nothing is missing counts as much as all that was looked at together: of many something fits best by chance.
         let nothing = self.all.len() as f64 * over(null.log_evidence);
         let total = tried.iter().filter(|t| !refuted(t)).map(&weight).sum::<f64>() + nothing;
+        // Where most of what it gains is that tolerances are strained less, these had stood for it.
+        let tolerated_by_null = strained(&self.base, &null.at, &[]);
+        let imitated = |t: &Tried| {
+            let relieved = tolerated_by_null - strained(&t.unknowns, &t.fit.at, &t.places);
+            relieved > 0.5 * (t.fit.log_evidence - null.log_evidence)
+        };
         let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
         let of_null = elpd::by_block(null, &self.base, &blocks);
         let finding = |t: &Tried| -> Vec<Finding> {
@@ -63,7 +69,8 @@ impl Search<'_> {
                     elpd_error,
                     strain: candidate.strain(t.fit.at[place]),
                     takes_along: takes_along(candidate, &t.unknowns, &t.fit.at),
-                    tolerated: self.base.iter().any(|u| u.target == candidate.unknown.target),
+                    tolerated: self.base.iter().any(|u| u.target == candidate.unknown.target)
+                        || imitated(t),
                     within: candidate.within(t.fit.at[place]),
                     beyond: (t.fit.at[place] - candidate.unknown.mean).abs() / candidate.unknown.sd,
                     validation_z: self.z(&t.fit.readings),
@@ -76,6 +83,12 @@ impl Search<'_> {
         };
         tried.iter().flat_map(finding).collect()
     }
+}
+
+/// What it costs that unknowns are off the middle of their ranges, but for those at `places`, nats.
+fn strained(unknowns: &[Unknown], at: &[f64], places: &[usize]) -> f64 {
+    let others = (0..unknowns.len()).filter(|i| !places.contains(i));
+    0.5 * others.map(|i| ((at[i] - unknowns[i].mean) / unknowns[i].sd).powi(2)).sum::<f64>()
 }
 
 /// Ranges of the fitted samples that belong to one block of time of one sensor.
