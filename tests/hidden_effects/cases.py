@@ -41,11 +41,12 @@ class Draw:
         self.neutral = module.neutral(self.rig)
         self.plant = list(module.effects(self.rig))
         inputs = [s for s in self.sensors if s.role == "input" and s.truth in module.INPUTS]
-        tolerances = module.tolerances(self.rig)
+        # What is drawn, and what the model declares beside it.
+        tolerances = list(module.tolerances(self.rig).items()) + list(module.declared(self.rig).items())
         plain = module.simulate(self.rig, [self.neutral])
         # An offset and a gain of each input that are small but visible.
         offset = {s.truth: 0.5 if s.kind == "k" else 0.02 * np.mean(plain[s.truth]) for s in inputs}
-        variants = [{}] + [{k: self.neutral[k] + half} for k, half in tolerances.items()]
+        variants = [{}] + [{k: self.neutral[k] + half} for k, half in tolerances]
         variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((offset[s.truth], 1.0), (0.0, 1.02))]
         variants += [variant(look) for _, _, _, variant, look, _, _ in self.plant]
         channels = module.simulate(self.rig, [self.neutral | v for v in variants])
@@ -62,10 +63,8 @@ class Draw:
                 mean = np.mean(channels[s.truth][0])
                 look.noisier(look.of(channels, first + 1) / 0.02, np.hypot(noise, s.resolution_si() / 12**0.5) / mean)
         k = 1
-        for key, half in tolerances.items():
-            # With what the model declares for its formulas, which nobody draws.
-            formula = getattr(module, "FORMULAS", {}).get(key.split(".")[-1], 0.0)
-            look.tolerate(look.of(channels, k), np.hypot(1.0, formula / max(half, 1e-9)) / ROOT3)
+        for _ in tolerances:
+            look.tolerate(look.of(channels, k), 1 / ROOT3)
             k += 1
         self.effects = []  # id, component, parameter, neutral, first look, range, variant or None, signature
         for s in inputs:

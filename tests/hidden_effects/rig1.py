@@ -14,7 +14,6 @@ FIRST_S = 200  # until the water that was there at the start has left
 AGREES_K = 0.05  # with anergy, median, where nothing is hidden
 STEEL = 7850.0 * 470.0
 FLOWS_THROUGH = True  # without storages
-FORMULAS = {"friction": 0.01}  # the model has another formula, which is right to 1 to 2 %
 AS_BUILT = {"P1"}  # as strong as the pipe is thick
 ONE_SIDED = {"P4", "P5", "P6", "P7", "P8", "S4"}
 
@@ -175,6 +174,12 @@ def tolerances(rig):
         p |= {f"{n}.length": 0.005, f"{n}.loss": 0.05, f"{n}.film": 0.1, f"{n}.friction": 0.01}
         p[f"{n}.wall"] = 0.02 * neutral(rig)[f"{n}.wall"]
     return p
+
+
+def declared(rig):
+    """What is uncertain beside what is drawn: the model's formula of friction is right to 1 to 2 %, a heat loss at rest to 12 %."""
+    of = {"friction": 0.01} | ({"standstill": 0.12} if rig["pauses"] else {})
+    return {f"{pipe['name']}.{key}": half for pipe in rig["pipes"] for key, half in of.items()}
 
 
 def effects(rig):

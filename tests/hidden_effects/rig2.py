@@ -157,6 +157,12 @@ def tolerances(rig):
     return p | ({"heat": 0.003, "good": 0.01} if rig["pump"] else {"heat_a": 0.003, "heat_b": 0.003, "good_a": 0.01, "good_b": 0.01})
 
 
+def declared(rig):
+    """What the model declares beside what is drawn: what its storage conducts, and how a generator goes at part load and starts."""
+    ends = [""] if rig["pump"] else ["_a", "_b"]
+    return {"conductivity": 0.5} | {f"part{x}": 0.01 for x in ends} | {f"slow{x}": 0.08 for x in ends}
+
+
 def effects(rig):
     def one(id_, component, parameter, key, first, range_, zero):
         return id_, component, parameter, (lambda x: {key: x}), first, range_, zero

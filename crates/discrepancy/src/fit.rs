@@ -26,6 +26,8 @@ const GAIN: f64 = 0.02;
 const MAX_STEPS: u32 = 25;
 /// Evidence that a fit may leave on the table, nats.
 const ENOUGH: f64 = 0.05;
+/// Nats that sensitivities of elsewhere may promise without a step that gains, before they are simulated again.
+const PROMISED: f64 = 2.0;
 /// Coordinates stay within so many standard deviations of their prior.
 pub(crate) const BOUND_SD: f64 = 6.0;
 
@@ -157,7 +159,7 @@ pub fn fit(
         let weighted = here.weighted(&sensitivity);
         let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
         let hessian = curvature(&weighted, unknowns);
-        let mut gained = 0.0;
+        let (mut gained, mut promised) = (0.0, 0.0);
         for _ in 0..6 {
             let mut damped = hessian.clone();
             for i in 0..n {
@@ -166,9 +168,11 @@ pub fn fit(
             let Some(factor) = damped.cholesky() else { break };
             let step = factor.solve(&gradient);
             // A step that hardly changes anything is not worth a simulation.
-            if 0.5 * step.dot(&gradient) < 0.1 * ENOUGH {
+            let promises = 0.5 * step.dot(&gradient);
+            if promises < 0.1 * ENOUGH {
                 break;
             }
+            promised = f64::max(promised, promises);
             let there = at.iter().zip(step.iter()).zip(unknowns);
             let there: Vec<f64> = there
                 .map(|((x, dx), u)| {
@@ -206,6 +210,9 @@ pub fn fit(
         if fresh || 0.5 * since < ENOUGH {
             break;
         }
+        // Sensitivities that promise much and lead nowhere are those of another place.
+        let stale = gained == 0.0 && promised > PROMISED;
+        let renewed = if stale { &all } else { renewed };
         problem.differences(&at, &here, renewed, &mut slopes)?;
         problem.columns(&slopes, renewed, &mut sensitivity);
         (damping, fresh, since) = (1e-3, true, 0.0);

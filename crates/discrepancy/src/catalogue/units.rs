@@ -7,8 +7,6 @@ use crate::sensors::Sensor;
 use crate::unknown::{Target, Unknown};
 use serde_json::Value;
 
-/// A depth of water between this share of a layer and a whole one is not told from the layer.
-const LEAST_LAYER: f64 = 1e-3;
 /// What the efficiency at part load may be off without an effect over what each load of it may be.
 const PART: f64 = 2.0;
 
@@ -199,17 +197,16 @@ fn of_storage(id: &str, known: &Known, layer_m: f64, all: &mut Vec<Candidate>) {
     let idle = "hours without flow";
     let mixing = factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle);
     all.push(mixing.tolerated(0.0, known.storage_mixing));
-    let beyond = Candidate::effect(
+    // What is drawn from within a layer is drawn from the layer.
+    let least_m = layer_m.clamp(0.02, 0.2);
+    all.push(Candidate::effect(
         "T3",
         id,
         "water beyond the ports that takes part",
         ("depth_m", "m"),
-        |target| Unknown::between(target, 0.02, 0.4),
+        |target| Unknown::between(target, least_m, 0.4),
         "a sensor below the lowest port",
-    );
-    // Anything down to a thousandth of a layer of the model may be the layer.
-    let sd = 0.5 * LEAST_LAYER.ln().abs();
-    all.push(beyond.tolerated((LEAST_LAYER * layer_m).max(f64::MIN_POSITIVE).ln(), sd));
+    ));
     all.push(Candidate::effect(
         "T4",
         id,
