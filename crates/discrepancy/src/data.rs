@@ -157,7 +157,7 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
     for run in &mut runs {
         for (track, sensor) in run.tracks.iter_mut().zip(&sensors.sensor) {
             if sensor.role == Role::Input && sensor.si() == "1" {
-                *track = at_once(track);
+                *track = at_once(track, !sensor.signal.ends_with("modulation"));
                 continue;
             }
             let resolution = sensor.difference_to_si(sensor.quantisation).abs();
@@ -228,9 +228,9 @@ const WHILE_S: f64 = 1.0;
 /// A command goes in ramps where more than this share of its switches was read on their way.
 const RAMPS: f64 = 0.25;
 
-/// A command that goes from a level to nothing or back is switched at once: a single reading between the two was taken meanwhile. Where
-/// that happens too often for chance, it goes in ramps (the speed of a pump), and stays as it is.
-fn at_once(track: &Track) -> Track {
+/// A command that goes from a level to nothing or back is switched at once: a single reading between the two was taken meanwhile. What
+/// may go in ramps (the speed of a pump, not the modulation of a generator) does where that happens too often for chance, and stays as it is.
+fn at_once(track: &Track, may_ramp: bool) -> Track {
     let (t, y) = (&track.time_s, &track.value);
     let largest = y.iter().fold(0.0_f64, |most, y| most.max(*y));
     let is_off = |i: usize| y[i] <= OFF * largest;
@@ -248,7 +248,7 @@ fn at_once(track: &Track) -> Track {
     };
     let switches = (1..y.len()).filter(|&i| is_off(i) != is_off(i - 1)).count();
     let passing = (0..y.len()).filter(|&i| passes(i)).count();
-    if passing as f64 > RAMPS * switches as f64 {
+    if may_ramp && passing as f64 > RAMPS * switches as f64 {
         return track.clone();
     }
     let mut switched = Track { time_s: Vec::new(), value: Vec::new() };
@@ -276,7 +276,7 @@ mod tests {
             value: value.to_vec(),
         };
         // Read at 0.05 at 20 s, once in four times.
-        let switched = at_once(&track(&[0.8, 0.8, 0.05, 0.0, 0.6, 0.6, 0.0, 0.4]));
+        let switched = at_once(&track(&[0.8, 0.8, 0.05, 0.0, 0.6, 0.6, 0.0, 0.4]), true);
         assert_eq!(switched.time_s, [0.0, 10.0, 19.5, 20.5, 30.0, 40.0, 50.0, 60.0, 70.0]);
         assert_eq!(switched.value, [0.8, 0.8, 0.8, 0.0, 0.0, 0.6, 0.6, 0.0, 0.4]);
         // A ramp, a lower level, one that was read at once, and one that was read on its way each time stay.
@@ -286,8 +286,10 @@ mod tests {
             &[0.8, 0.8, 0.8, 0.0, 0.0, 0.8],
             &[0.8, 0.8, 0.1, 0.0, 0.0, 0.0],
         ] {
-            assert_eq!(at_once(&track(plain)), track(plain));
+            assert_eq!(at_once(&track(plain), true), track(plain));
         }
+        let of_burner = at_once(&track(&[0.8, 0.8, 0.1, 0.0, 0.0, 0.0]), false);
+        assert_eq!(of_burner.value, [0.8, 0.8, 0.8, 0.0, 0.0, 0.0, 0.0]);
     }
 
     const SENSORS: &str =
