@@ -12,6 +12,7 @@ mod count;
 mod elimination;
 mod flush;
 pub mod hunting;
+mod lanes;
 mod law;
 mod limit;
 mod loops;

@@ -10,15 +10,16 @@ type C64 = Complex<f64>;
 
 /// Lags in a row: those of an actuator, that of the water, that of a sensor.
 pub(super) const MOST: usize = 4;
-/// Norm below which so many terms of the series of an exponential are all: 0.25^12/12! is 1e-16.
-const SMALL: f64 = 0.25;
-const TERMS: i32 = 12;
+/// Norm below which four times so many terms of the series of an exponential are all: 0.5^16/16! is 1e-18.
+const SMALL: f64 = 0.5;
+const BLOCKS: usize = 4;
 
 /// A chain of lags with a dead time.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chain {
-    /// Time constants, s; without those that are zero.
-    lags_s: Vec<f64>,
+    /// Time constants, s; without those that are zero, which are behind.
+    all_s: [f64; MOST],
+    n: usize,
     /// How many of them are those of actuator and water.
     ahead: usize,
     dead_s: f64,
@@ -67,18 +68,26 @@ impl Chain {
     pub fn new(actuator_lag_s: f64, water_lag_s: f64, sensor_lag_s: f64, dead_s: f64) -> Self {
         let all = [actuator_lag_s, actuator_lag_s, water_lag_s, sensor_lag_s];
         let ahead = all[..3].iter().filter(|lag| **lag > 0.0).count();
-        Self { lags_s: all.into_iter().filter(|lag| *lag > 0.0).collect(), ahead, dead_s }
+        let (mut all_s, mut n) = ([0.0; MOST], 0);
+        for lag_s in all.into_iter().filter(|lag_s| *lag_s > 0.0) {
+            (all_s[n], n) = (lag_s, n + 1);
+        }
+        Self { all_s, n, ahead, dead_s }
+    }
+
+    fn lags_s(&self) -> &[f64] {
+        &self.all_s[..self.n]
     }
 
     /// The answer to a command at a complex frequency, 1/s.
     pub fn at(&self, s: Complex<f64>) -> Complex<f64> {
-        let lags: Complex<f64> = self.lags_s.iter().map(|lag| s * *lag + 1.0).product();
+        let lags: Complex<f64> = self.lags_s().iter().map(|lag| s * *lag + 1.0).product();
         (-s * self.dead_s).exp() / lags
     }
 
     /// All its times added up, s.
     pub fn total_s(&self) -> f64 {
-        self.lags_s.iter().sum::<f64>() + self.dead_s
+        self.lags_s().iter().sum::<f64>() + self.dead_s
     }
 
     pub fn sampled(&self, interval_s: f64) -> SampledChain {
@@ -93,7 +102,7 @@ impl Chain {
         let ((phi, gamma), (phi_rest, gamma_rest)) = (self.step(interval_s), self.step(rest_s));
         #[allow(clippy::cast_possible_truncation)]
         let late = whole as i32 + 1;
-        let (n, ahead) = (self.lags_s.len(), self.ahead);
+        let (n, ahead) = (self.n, self.ahead);
         let mut reading = Reading {
             by_ahead: [0.0; MOST - 1],
             by_command: 0.0,
@@ -117,13 +126,13 @@ impl Chain {
     fn step(&self, time_s: f64) -> ([[f64; MOST]; MOST], [f64; MOST]) {
         // The command first, then each lag behind the one that drives it: lower triangular.
         let mut rates = [[0.0; MOST + 1]; MOST + 1];
-        for (i, lag_s) in self.lags_s.iter().enumerate() {
+        for (i, lag_s) in self.lags_s().iter().enumerate() {
             rates[i + 1][i + 1] = -time_s / lag_s;
             rates[i + 1][i] = time_s / lag_s;
         }
-        let step = exponential(&rates);
+        let step = exponential(&rates, self.n + 1);
         let (mut phi, mut gamma) = ([[0.0; MOST]; MOST], [0.0; MOST]);
-        let own = step.iter().skip(1).take(self.lags_s.len());
+        let own = step.iter().skip(1).take(self.n);
         for ((phi, gamma), step) in phi.iter_mut().zip(&mut gamma).zip(own) {
             *gamma = step[0];
             phi.copy_from_slice(&step[1..]);
@@ -161,29 +170,41 @@ impl SampledChain {
 
 type Square = [[f64; MOST + 1]; MOST + 1];
 
-/// Exponential of a lower triangular matrix: its series for a part so small that it ends, squared as often as that was halved.
-fn exponential(matrix: &Square) -> Square {
+/// Exponential of a lower triangular matrix of some size, whose other entries are zero: its series for a part so small that it
+/// ends, squared as often as that was halved.
+fn exponential(matrix: &Square, size: usize) -> Square {
     let entries = || matrix.iter().flatten();
     let largest = entries().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     // Two entries in a row at most.
     let halvings = (2.0 * largest / SMALL).log2().ceil().max(0.0) as i32;
     let part = matrix.map(|row| row.map(|entry| entry * 0.5_f64.powi(halvings)));
+    // The series in blocks of four terms, each block times the fourth power of the part (Paterson and Stockmeyer).
+    let square = product(&part, &part, size);
+    let (cube, fourth) = (product(&square, &part, size), product(&square, &square, size));
+    let powers = [identity(), part, square, cube];
     let mut sum = [[0.0; MOST + 1]; MOST + 1];
-    (0..=MOST).for_each(|i| sum[i][i] = 1.0);
-    let mut term = sum;
-    for k in 1..=TERMS {
-        term = product(&term, &part).map(|row| row.map(|entry| entry / f64::from(k)));
-        for (sum, term) in sum.iter_mut().flatten().zip(term.iter().flatten()) {
-            *sum += term;
+    for block in (0..BLOCKS).rev() {
+        if block + 1 < BLOCKS {
+            sum = product(&sum, &fourth, size);
+        }
+        for (k, power) in powers.iter().enumerate() {
+            let share = 1.0 / (1..=4 * block + k).map(|i| i as f64).product::<f64>();
+            for (sum, entry) in sum.iter_mut().flatten().zip(power.iter().flatten()) {
+                *sum += share * entry;
+            }
         }
     }
-    (0..halvings).fold(sum, |power, _| product(&power, &power))
+    (0..halvings).fold(sum, |power, _| product(&power, &power, size))
 }
 
-/// Product of lower triangular matrices.
-fn product(a: &Square, b: &Square) -> Square {
+fn identity() -> Square {
+    std::array::from_fn(|i| std::array::from_fn(|k| if i == k { 1.0 } else { 0.0 }))
+}
+
+/// Product of lower triangular matrices of some size.
+fn product(a: &Square, b: &Square, size: usize) -> Square {
     let mut product = [[0.0; MOST + 1]; MOST + 1];
-    for (i, (row, a)) in product.iter_mut().zip(a).enumerate() {
+    for (i, (row, a)) in product.iter_mut().zip(a).take(size).enumerate() {
         for (k, (share, b)) in a.iter().zip(b).take(i + 1).enumerate() {
             row[..=k].iter_mut().zip(b).for_each(|(entry, b)| *entry += share * b);
         }

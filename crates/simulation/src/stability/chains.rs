@@ -2,6 +2,7 @@
 
 use super::chain::{Chain, MOST, Reading, SampledChain};
 use super::elimination::Rows;
+use super::lanes::{RowMut, in_vectors};
 use nalgebra::{Complex, DMatrix};
 
 type C64 = Complex<f64>;
@@ -45,6 +46,31 @@ impl Readings {
             by_itself_rest: each(&|reading| reading.by_itself_rest),
         }
     }
+
+    /// The readings for each output behind its lags, in `rest`, where `behind` is the lag of the sensor itself; `before`
+    /// is work space.
+    #[inline(always)]
+    fn follow(&self, ahead: &[Apart], behind: C64, before: RowMut, rest: RowMut) {
+        let n = self.by_command.len();
+        let (before_re, before_im) = (&mut before.0[..n], &mut before.1[..n]);
+        let (rest_re, rest_im) = (&mut rest.0[..n], &mut rest.1[..n]);
+        before_re.copy_from_slice(&self.by_command);
+        rest_re.copy_from_slice(&self.by_command_rest);
+        before_im.fill(0.0);
+        rest_im.fill(0.0);
+        for ((ahead, now), later) in ahead.iter().zip(&self.by_ahead).zip(&self.by_ahead_rest) {
+            add_products(before_re, &ahead.re, now);
+            add_products(before_im, &ahead.im, now);
+            add_products(rest_re, &ahead.re, later);
+            add_products(rest_im, &ahead.im, later);
+        }
+        let before = before_re.iter().zip(before_im.iter()).zip(&self.by_itself_rest);
+        let rest = rest_re.iter_mut().zip(rest_im.iter_mut());
+        for (((re, im), itself), (rest_re, rest_im)) in before.zip(rest) {
+            *rest_re += (behind.re * re - behind.im * im) * itself;
+            *rest_im += (behind.re * im + behind.im * re) * itself;
+        }
+    }
 }
 
 /// Complex numbers of the outputs, real and imaginary parts apart.
@@ -61,6 +87,7 @@ impl Apart {
 }
 
 /// `sum += a b`, one by one.
+#[inline(always)]
 fn add_products(sum: &mut [f64], a: &[f64], b: &[f64]) {
     sum.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
 }
@@ -120,11 +147,17 @@ impl Chains {
             let lag = |kind: &usize| self.actuator_lags_s[*kind];
             let chain = |lag_s| Chain::new(lag_s, self.water_lag_s, 0.0, 0.0).at(s);
             let ahead = Apart::of(self.actuator_of.iter().map(|kind| chain(lag(kind))));
-            for ((i, kind), gains) in of.iter().enumerate().zip(gains.as_slice().chunks_exact(n)) {
-                let seen = self.sensors[*kind];
-                let behind = Chain::new(0.0, 0.0, seen.lag_s, seen.dead_s).at(s);
-                with_gains(behind, (&ahead.re, &ahead.im), gains, plant.row_mut(i));
-            }
+            in_vectors(
+                #[inline(always)]
+                || {
+                    let gains = gains.as_slice().chunks_exact(n);
+                    for ((i, kind), gains) in of.iter().enumerate().zip(gains) {
+                        let seen = self.sensors[*kind];
+                        let behind = Chain::new(0.0, 0.0, seen.lag_s, seen.dead_s).at(s);
+                        with_gains(behind, (&ahead.re, &ahead.im), gains, plant.row_mut(i));
+                    }
+                },
+            );
             return plant;
         }
         let (z, kinds) = (self.variable(s), self.actuator_lags_s.len());
@@ -133,30 +166,19 @@ impl Chains {
         let lag = |k: usize| Apart::of(self.actuator_of.iter().map(|kind| ahead[*kind][k]));
         let ahead: Vec<Apart> = (0..most).map(lag).collect();
         let (mut before, mut rest) = (Rows::zeros(1, n), Rows::zeros(1, n));
-        for ((i, kind), gains) in of.iter().enumerate().zip(gains.as_slice().chunks_exact(n)) {
-            let (chain, readings) = (&self.sampled[kind * kinds], &self.readings[*kind]);
-            let ((before_re, before_im), (rest_re, rest_im)) = (before.row_mut(0), rest.row_mut(0));
-            before_re.copy_from_slice(&readings.by_command);
-            rest_re.copy_from_slice(&readings.by_command_rest);
-            before_im.fill(0.0);
-            rest_im.fill(0.0);
-            let lags = ahead.iter().zip(&readings.by_ahead).zip(&readings.by_ahead_rest);
-            for ((ahead, now), later) in lags {
-                add_products(before_re, &ahead.re, now);
-                add_products(before_im, &ahead.im, now);
-                add_products(rest_re, &ahead.re, later);
-                add_products(rest_im, &ahead.im, later);
-            }
-            let behind = chain.behind(z);
-            let itself = readings.by_itself_rest.iter();
-            let rest_parts = rest_re.iter_mut().zip(rest_im.iter_mut());
-            let parts = before_re.iter().zip(before_im.iter()).zip(itself).zip(rest_parts);
-            for (((re, im), itself), (rest_re, rest_im)) in parts {
-                *rest_re += (behind.re * re - behind.im * im) * itself;
-                *rest_im += (behind.re * im + behind.im * re) * itself;
-            }
-            with_gains(chain.late(z), rest.row(0), gains, plant.row_mut(i));
-        }
+        in_vectors(
+            #[inline(always)]
+            || {
+                for ((i, kind), gains) in
+                    of.iter().enumerate().zip(gains.as_slice().chunks_exact(n))
+                {
+                    let chain = &self.sampled[kind * kinds];
+                    let readings = &self.readings[*kind];
+                    readings.follow(&ahead, chain.behind(z), before.row_mut(0), rest.row_mut(0));
+                    with_gains(chain.late(z), rest.row(0), gains, plant.row_mut(i));
+                }
+            },
+        );
         plant
     }
 
@@ -204,6 +226,7 @@ impl Chains {
 }
 
 /// `own = share other gains`, one by one.
+#[inline(always)]
 fn with_gains(
     share: C64,
     (other_re, other_im): (&[f64], &[f64]),

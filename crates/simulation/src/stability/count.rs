@@ -117,9 +117,10 @@ fn pivots(mut matrix: Rows) -> Option<Vec<C64>> {
     };
     let scales: Vec<f64> = (0..matrix.rows()).map(largest).collect();
     let mut pivots = Vec::with_capacity(scales.len());
-    for (k, scale) in scales.into_iter().enumerate() {
+    for (k, scale) in scales.iter().enumerate() {
         let pivot = matrix.at(k, k);
-        if pivot.norm().partial_cmp(&(LOST * scale)) != Some(std::cmp::Ordering::Greater) {
+        let found = pivot.norm() > LOST * scale;
+        if !found {
             return None;
         }
         pivots.push(pivot);

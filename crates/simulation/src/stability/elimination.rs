@@ -1,29 +1,29 @@
 //! Dense complex matrices, real and imaginary parts apart, so that the inner loops are those of plain numbers along
 //! rows; their elimination with exchanges.
 //!
-//! **Numerics** the inner loops are compiled for the vectors of the processor too (`pulp`), which changes no digit: each
-//! number is worked out by the same operations.
+//! **Numerics** rows are filled up with zeros to whole vectors of the processor (`lanes.rs`). Pivots are taken off in panels
+//! of one vector: what is right of a panel waits until all pivots of it are known, and is then read and written once for
+//! all of them. **Sources** `golub2013` (3.2.11).
 
+use super::lanes::{LANES, Row, RowMut, add_rows, more, take_off};
 use nalgebra::{Complex, DMatrix, DVector};
-use pulp::Arch;
 
 type C64 = Complex<f64>;
-
-/// A part of a row, or a row: real and imaginary parts.
-type Row<'a> = (&'a [f64], &'a [f64]);
-type RowMut<'a> = (&'a mut [f64], &'a mut [f64]);
 
 /// A matrix, row by row.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     columns: usize,
+    /// Length of a row: whole lanes.
+    width: usize,
     re: Vec<f64>,
     im: Vec<f64>,
 }
 
 impl Rows {
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self { columns, re: vec![0.0; rows * columns], im: vec![0.0; rows * columns] }
+        let width = columns.next_multiple_of(LANES);
+        Self { columns, width, re: vec![0.0; rows * width], im: vec![0.0; rows * width] }
     }
 
     /// Number of columns.
@@ -33,44 +33,44 @@ impl Rows {
 
     /// Number of rows.
     pub fn rows(&self) -> usize {
-        self.re.len().checked_div(self.columns).unwrap_or(0)
+        self.re.len().checked_div(self.width).unwrap_or(0)
     }
 
     pub fn at(&self, i: usize, j: usize) -> C64 {
-        C64::new(self.re[i * self.columns + j], self.im[i * self.columns + j])
+        C64::new(self.re[i * self.width + j], self.im[i * self.width + j])
     }
 
     pub fn set(&mut self, i: usize, j: usize, value: C64) {
-        (self.re[i * self.columns + j], self.im[i * self.columns + j]) = (value.re, value.im);
+        (self.re[i * self.width + j], self.im[i * self.width + j]) = (value.re, value.im);
     }
 
+    /// A row with the zeros behind it.
+    #[inline]
     pub fn row(&self, i: usize) -> Row<'_> {
-        let of = i * self.columns..(i + 1) * self.columns;
+        let of = i * self.width..(i + 1) * self.width;
         (&self.re[of.clone()], &self.im[of])
     }
 
+    /// A row with the zeros behind it.
+    #[inline]
     pub fn row_mut(&mut self, i: usize) -> RowMut<'_> {
-        let of = i * self.columns..(i + 1) * self.columns;
+        let of = i * self.width..(i + 1) * self.width;
         (&mut self.re[of.clone()], &mut self.im[of])
     }
 
     /// `1 + factor M` of a square matrix.
     pub fn closed(mut self, factor: f64) -> Self {
-        let n = self.columns;
-        self.re.iter_mut().chain(&mut self.im).for_each(|x| *x *= factor);
-        self.re.iter_mut().step_by(n + 1).for_each(|x| *x += 1.0);
+        self.re.iter_mut().for_each(|x| *x *= factor);
+        self.im.iter_mut().for_each(|x| *x *= factor);
+        self.re.iter_mut().step_by(self.width + 1).for_each(|x| *x += 1.0);
         self
     }
 
     /// `left^H M right`.
     pub fn between(&self, left: &DVector<C64>, right: &DVector<C64>) -> C64 {
-        let n = self.columns;
-        let (mut re, mut im) = (vec![0.0; n], vec![0.0; n]);
-        Arch::new().dispatch(|| {
-            for (i, share) in left.iter().enumerate() {
-                more(share.conj(), self.row(i), (&mut re, &mut im));
-            }
-        });
+        let (mut re, mut im) = (vec![0.0; self.width], vec![0.0; self.width]);
+        let shares: Vec<C64> = left.iter().map(|share| share.conj()).collect();
+        add_rows(&shares, (&self.re, &self.im), (&mut re, &mut im));
         let entries = re.into_iter().zip(im).map(|(re, im)| C64::new(re, im));
         entries.zip(right.iter()).map(|(entry, right)| entry * right).sum()
     }
@@ -95,8 +95,8 @@ impl Eliminated {
         let n = matrix.columns;
         let mut all = Self { rows: matrix, order: (0..n).collect() };
         for k in 0..n {
-            let sizes = (k..n).map(|i| (all.rows.at(i, k).norm_sqr(), i));
-            let (size, pivot) = sizes.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            let pivot = all.rows.largest_below(k);
+            let size = all.rows.at(pivot, k).norm_sqr();
             if !(size > 0.0 && size.is_finite()) {
                 return None;
             }
@@ -109,7 +109,7 @@ impl Eliminated {
     fn exchange(&mut self, i: usize, j: usize) {
         if i != j {
             self.order.swap(i, j);
-            let (n, low, high) = (self.order.len(), i.min(j), i.max(j));
+            let (n, low, high) = (self.rows.width, i.min(j), i.max(j));
             for part in [&mut self.rows.re, &mut self.rows.im] {
                 let (upper, lower) = part.split_at_mut(high * n);
                 upper[low * n..(low + 1) * n].swap_with_slice(&mut lower[..n]);
@@ -163,25 +163,25 @@ impl Eliminated {
 
     /// The inverse of the matrix.
     pub fn inverse(&self) -> Rows {
-        let n = self.order.len();
+        let (n, width) = (self.order.len(), self.rows.width);
         let mut inverse = Rows::zeros(n, n);
         for (row, &was) in self.order.iter().enumerate() {
-            inverse.re[row * n + was] = 1.0;
+            inverse.re[row * width + was] = 1.0;
         }
+        let shares = |i: usize, of: std::ops::Range<usize>| -> Vec<C64> {
+            of.map(|k| -self.rows.at(i, k)).collect()
+        };
         for i in 1..n {
-            let (known_re, own_re) = inverse.re.split_at_mut(i * n);
-            let (known_im, own_im) = inverse.im.split_at_mut(i * n);
-            for (k, row) in known_re.chunks_exact(n).zip(known_im.chunks_exact(n)).enumerate() {
-                more(-self.rows.at(i, k), row, (&mut own_re[..n], &mut own_im[..n]));
-            }
+            let (known_re, own_re) = inverse.re.split_at_mut(i * width);
+            let (known_im, own_im) = inverse.im.split_at_mut(i * width);
+            let own = (&mut own_re[..width], &mut own_im[..width]);
+            add_rows(&shares(i, 0..i), (known_re, known_im), own);
         }
         for i in (0..n).rev() {
-            let (before_re, known_re) = inverse.re.split_at_mut((i + 1) * n);
-            let (before_im, known_im) = inverse.im.split_at_mut((i + 1) * n);
-            let (own_re, own_im) = (&mut before_re[i * n..], &mut before_im[i * n..]);
-            for (k, row) in known_re.chunks_exact(n).zip(known_im.chunks_exact(n)).enumerate() {
-                more(-self.rows.at(i, i + 1 + k), row, (own_re, own_im));
-            }
+            let (before_re, known_re) = inverse.re.split_at_mut((i + 1) * width);
+            let (before_im, known_im) = inverse.im.split_at_mut((i + 1) * width);
+            let (own_re, own_im) = (&mut before_re[i * width..], &mut before_im[i * width..]);
+            add_rows(&shares(i, i + 1..n), (known_re, known_im), (own_re, own_im));
             let pivot = self.rows.at(i, i).inv();
             for (x, y) in own_re.iter_mut().zip(own_im) {
                 let value = C64::new(*x, *y) * pivot;
@@ -193,20 +193,23 @@ impl Eliminated {
 }
 
 impl Rows {
-    /// Takes row `k` of a square matrix off the rows below it; the multipliers stay in its column.
-    pub fn eliminate(&mut self, k: usize) {
-        let n = self.columns;
-        let inverse = self.at(k, k).inv();
-        let (upper_re, lower_re) = self.re.split_at_mut((k + 1) * n);
-        let (upper_im, lower_im) = self.im.split_at_mut((k + 1) * n);
-        let row = (&upper_re[k * n + k + 1..], &upper_im[k * n + k + 1..]);
-        Arch::new().dispatch(|| {
-            for (re, im) in lower_re.chunks_exact_mut(n).zip(lower_im.chunks_exact_mut(n)) {
-                let share = C64::new(re[k], im[k]) * inverse;
-                (re[k], im[k]) = (share.re, share.im);
-                more(-share, row, (&mut re[k + 1..], &mut im[k + 1..]));
+    /// The row from `k` on with the largest entry in column `k`, the last of them where some are equal.
+    fn largest_below(&self, k: usize) -> usize {
+        let (mut largest, mut row) = (0.0, k);
+        for i in k..self.columns {
+            let size = self.at(i, k).norm_sqr();
+            if size >= largest {
+                (largest, row) = (size, i);
             }
-        });
+        }
+        row
+    }
+
+    /// Takes row `k` of a square matrix off the rows below it, right of its panel with the last row of the panel; the
+    /// multipliers stay in its column.
+    pub fn eliminate(&mut self, k: usize) {
+        let inverse = self.at(k, k).inv();
+        take_off((&mut self.re, &mut self.im), self.width, k, inverse);
     }
 }
 
@@ -220,15 +223,6 @@ fn dot((a_re, a_im): Row, (b_re, b_im): Row) -> C64 {
         sums[3] += b * x;
     }
     C64::new(sums[0] - sums[1], sums[2] + sums[3])
-}
-
-/// `own += share other`.
-#[inline]
-pub(super) fn more(share: C64, (other_re, other_im): Row, own: RowMut) {
-    for ((x, y), (a, b)) in own.0.iter_mut().zip(own.1).zip(other_re.iter().zip(other_im)) {
-        *x += share.re * a - share.im * b;
-        *y += share.re * b + share.im * a;
-    }
 }
 
 #[cfg(test)]

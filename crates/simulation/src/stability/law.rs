@@ -123,15 +123,20 @@ impl Law {
     /// Outputs over measured values at a value of `s`, or of `z` where it is sampled.
     pub fn transfer(&self, p: Complex<f64>) -> DMatrix<Complex<f64>> {
         let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex::new(entry, 0.0));
-        let n = self.a.nrows();
-        if n == 1 && self.c.nrows() == 1 && self.b.ncols() == 1 {
-            let value = self.c[(0, 0)] * self.b[(0, 0)] / (p - self.a[(0, 0)]) + self.d[(0, 0)];
+        if let Some(value) = self.single(p) {
             return DMatrix::from_element(1, 1, value);
         }
+        let n = self.a.nrows();
         let resolvent = DMatrix::from_diagonal_element(n, n, p) - complex(&self.a);
         let answer = resolvent.lu().solve(&complex(&self.b));
         let through = answer.map(|answer| complex(&self.c) * answer);
         through.map_or_else(|| complex(&self.d), |through| through + complex(&self.d))
+    }
+
+    /// The same of a law with one state that holds one output by one measured value.
+    pub fn single(&self, p: Complex<f64>) -> Option<Complex<f64>> {
+        let single = self.a.nrows() == 1 && self.c.nrows() == 1 && self.b.ncols() == 1;
+        single.then(|| self.c[(0, 0)] * self.b[(0, 0)] / (p - self.a[(0, 0)]) + self.d[(0, 0)])
     }
 
     /// Outputs over a set point at a value of `s`, or of `z` where it is sampled.

@@ -10,7 +10,8 @@
 
 use super::answers::Link;
 use super::chains::{Chains, Seen};
-use super::elimination::{Eliminated, Rows, more};
+use super::elimination::{Eliminated, Rows};
+use super::lanes::more;
 use super::law::Law;
 use super::response::StepResponse;
 use super::water::Late;
@@ -81,7 +82,7 @@ impl Loops {
 
     /// The gain of each controller where they differ in nothing else.
     fn uniform_gains(&self) -> Option<Vec<f64>> {
-        let single = |law: &Law| law.a.nrows() == 1 && law.c.nrows() == 1 && law.b.ncols() == 1;
+        let single = |law: &Law| law.single(one()).is_some();
         let plain = self.ways.len() == 1 && self.links.is_empty() && self.slow.is_empty();
         if !plain || !self.chains().alike() || !self.laws.iter().all(single) {
             return None;
@@ -102,7 +103,8 @@ impl Loops {
 
     /// The law and chain that all loops have where they are uniform, without gains.
     pub fn common(&self, s: Complex<f64>) -> Complex<f64> {
-        -self.laws[0].transfer(self.chains().variable(s))[(0, 0)] * self.chains().one(0, 0, s)
+        let answer = self.laws[0].single(self.chains().variable(s)).unwrap_or_default();
+        -answer * self.chains().one(0, 0, s)
     }
 
     /// The chains of what comes at once.
@@ -125,6 +127,11 @@ impl Loops {
         let (mut row, mut seen) = (0, 0);
         let mut matrix = Rows::zeros(n, n);
         for law in &self.laws {
+            if let Some(entry) = law.single(variable) {
+                more(-entry, plant.row(seen), matrix.row_mut(row));
+                (row, seen) = (row + 1, seen + 1);
+                continue;
+            }
             let transfer = law.transfer(variable);
             for (value, column) in transfer.column_iter().enumerate() {
                 for (output, entry) in column.iter().enumerate() {
@@ -152,7 +159,7 @@ impl Loops {
         let before = &self.laws[..law];
         let first: usize = before.iter().map(|law| law.c.nrows()).sum();
         let seen: usize = before.iter().map(|law| law.b.ncols()).sum();
-        let transfer = self.laws[law].transfer(self.chains().variable(s));
+        let variable = self.chains().variable(s);
         let answer = |value: usize| {
             let slow = self.slow.iter().find(|(of, to, _)| (*of, *to) == (value, i));
             match slow {
@@ -163,6 +170,10 @@ impl Loops {
                 }
             }
         };
+        if let Some(entry) = self.laws[law].single(variable) {
+            return -entry * answer(seen);
+        }
+        let transfer = self.laws[law].transfer(variable);
         let row = transfer.row(i - first);
         -row.iter().enumerate().map(|(k, entry)| entry * answer(seen + k)).sum::<Complex<f64>>()
     }
