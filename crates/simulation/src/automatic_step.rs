@@ -2,7 +2,8 @@
 //!
 //! **Equation** each followed quantity is predicted along the straight line of its last two values. What it
 //! misses over a step of length h after one of length g, times `h/(h + g)`, is the local error of the step,
-//! `h^2/2 |y''|` of a method of first order. Its ratio r to the tolerance decides: above 1 the next step is
+//! `h^2/2 |y''|` of a method of first order. Its ratio r to the tolerance, one for all quantities (`followed.rs`), decides:
+//! above 1 the next step is
 //! `0.8/sqrt(r)` times as long, below 1/8 twice, below 1/64 four times as long, between them nothing changes.
 //! **Assumptions** flows count while actuators with a lag move or controllers act at every step; otherwise they
 //! are functions of what drives them, which a step of any length meets at its end. **Numerics** the flows are
@@ -18,7 +19,7 @@ mod followed;
 
 use crate::model_file::{RunEntry, StepEntry};
 use anergy_core::clock::Time;
-pub(crate) use followed::Followed;
+pub(crate) use followed::{Followed, Quantity};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
@@ -386,10 +387,39 @@ mod tests {
     fn what_a_line_misses_is_the_local_error() {
         // y = t^2 at 0, 1, 3: line from (0, 0) through (1, 1) gives 3 at t = 3, which misses 6;
         // times 2/(2 + 1) is 4 = h^2/2 y'' = 2^2/2 2.
+        let at = |value| [Quantity { value, tolerance: 1.0, m_flow_kg_s: 2.0 }].into_iter();
         let mut followed = Followed::default();
-        followed.rest([(0.0, 1.0)].into_iter());
-        followed.keep(1.0, [(1.0, 1.0)].into_iter());
-        assert!((followed.miss(2.0, [(9.0, 1.0)].into_iter()) - 4.0).abs() < 1e-12);
+        followed.rest(at(0.0));
+        followed.keep(1.0, at(1.0));
+        assert!((followed.miss(2.0, 2.0, at(9.0)) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn few_loops_count_whole_and_one_of_many_by_its_share() {
+        let miss = |all: &[(f64, f64)]| {
+            let at = |value: f64| {
+                let quantity = move |(miss, m_flow_kg_s): &(f64, f64)| Quantity {
+                    value: value * miss,
+                    tolerance: 1.0,
+                    m_flow_kg_s: *m_flow_kg_s,
+                };
+                all.iter().map(quantity)
+            };
+            let mut followed = Followed::default();
+            followed.rest(at(0.0));
+            followed.miss(1.0, 4.0, at(1.0))
+        };
+        // All of the flow passes it.
+        assert_eq!(miss(&[(3.0, 4.0), (0.0, 4.0), (0.0, 4.0)]), 3.0);
+        // A quarter of the flow, alone: sqrt(1/4) 3. All quarters: 3.
+        assert_eq!(miss(&[(3.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0)]), 1.5);
+        assert_eq!(miss(&[(3.0, 1.0); 4]), 3.0);
+        // 1 of 16 misses 8, the others 2: sqrt((64 + 15 4)/16) is above sqrt(1/16) 8.
+        let mut many = [(2.0, 0.25); 16];
+        many[0].0 = 8.0;
+        assert!((miss(&many) - 7.75_f64.sqrt()).abs() < 1e-12);
+        // What does not flow moves nothing.
+        assert_eq!(miss(&[(9.0, 0.0), (0.5, 4.0)]), 0.5);
     }
 
     #[test]

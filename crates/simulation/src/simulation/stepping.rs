@@ -1,12 +1,13 @@
 //! Where steps end: events, and the automatic step.
 
 use super::Simulation;
-use crate::automatic_step::{AutomaticStep, Limit, Ratios, Step, StepMemory};
+use crate::automatic_step::{AutomaticStep, Limit, Quantity, Ratios, Step, StepMemory};
 use crate::error::RunError;
 use crate::plan::Plan;
 use crate::state::State;
 use anergy_core::clock::Time;
 use anergy_core::ids::SignalId;
+use std::collections::BTreeMap;
 
 /// Flows count relative to this share of the nominal flow at least.
 const LEAST_SHARE: f64 = 0.1;
@@ -20,8 +21,8 @@ pub(super) struct Stepper {
     least_kg_s: Vec<f64>,
     /// Edges whose position lags behind its command.
     lagging: Vec<usize>,
-    /// Outputs of continuous controllers with their ranges; those of controllers with an integral first.
-    outputs: Vec<(SignalId, f64)>,
+    /// Outputs of continuous controllers; those of controllers with an integral first.
+    outputs: Vec<Output>,
     integrating: usize,
     /// Positions and lags at the start of the step.
     positions: Vec<f64>,
@@ -29,6 +30,16 @@ pub(super) struct Stepper {
     /// Of the step that is being done.
     ratios: Ratios,
     ended: Limit,
+}
+
+/// An output of a controller.
+#[derive(Debug)]
+struct Output {
+    signal: SignalId,
+    /// From its least to its largest value.
+    range: f64,
+    /// Edge that it moves.
+    edge: Option<usize>,
 }
 
 impl Stepper {
@@ -40,6 +51,8 @@ impl Stepper {
         let lags = |edge: usize| {
             edges[edge].element.actuator().is_none_or(|actuator| actuator.rise_time_s > 0.0)
         };
+        let moved: BTreeMap<SignalId, usize> =
+            (0..edges.len()).filter_map(|edge| Some((plan.commands[edge]?, edge))).collect();
         let continuous = |tracks: bool| {
             let controllers = plan.controllers.iter().filter(move |controller| {
                 controller.interval == Time::ZERO && controller.controller.tracks() == tracks
@@ -47,7 +60,8 @@ impl Stepper {
             controllers.flat_map(|controller| {
                 controller.acts_on.iter().zip(&controller.limits).map(|(signal, (min, max))| {
                     let range = max - min;
-                    (*signal, if range.is_finite() && range > 0.0 { range } else { LEAST_RANGE })
+                    let range = if range.is_finite() && range > 0.0 { range } else { LEAST_RANGE };
+                    Output { signal: *signal, range, edge: moved.get(signal).copied() }
                 })
             })
         };
@@ -64,24 +78,45 @@ impl Stepper {
         }
     }
 
-    /// Flows with their tolerances, kg/s.
+    /// Flows, relative to which those of each edge count, kg/s.
+    fn sizes<'a>(&'a self, state: &'a State) -> impl Iterator<Item = f64> + 'a {
+        let flows = state.network.m_flow_kg_s.iter().zip(&self.least_kg_s);
+        flows.map(|(m, least)| m.abs().max(*least))
+    }
+
+    /// The largest of them.
+    fn largest_kg_s(&self, state: &State) -> f64 {
+        self.sizes(state).fold(0.0, f64::max)
+    }
+
+    /// Flows, kg/s.
     fn flows<'a>(
         &'a self,
         state: &'a State,
         limits: &'a AutomaticStep,
-    ) -> impl Iterator<Item = (f64, f64)> + 'a {
-        let flows = state.network.m_flow_kg_s.iter().zip(&self.least_kg_s);
-        flows.map(|(m, least)| (*m, limits.tolerance_flow * m.abs().max(*least)))
+    ) -> impl Iterator<Item = Quantity> + 'a {
+        let flows = state.network.m_flow_kg_s.iter().zip(self.sizes(state));
+        flows.map(|(value, size)| Quantity {
+            value: *value,
+            tolerance: limits.tolerance_flow * size,
+            m_flow_kg_s: size,
+        })
     }
 
-    /// Outputs with their tolerances.
+    /// Outputs; those that move no edge belong to all of the flow.
     fn outputs<'a>(
         &'a self,
         state: &'a State,
         limits: &'a AutomaticStep,
-    ) -> impl Iterator<Item = (f64, f64)> + 'a {
-        let tolerance = limits.tolerance_flow;
-        self.outputs.iter().map(move |(id, range)| (state.signals[id.index()], tolerance * range))
+        largest_kg_s: f64,
+    ) -> impl Iterator<Item = Quantity> + 'a {
+        let flows = &state.network.m_flow_kg_s;
+        let size = move |edge: usize| flows[edge].abs().max(self.least_kg_s[edge]);
+        self.outputs.iter().map(move |output| Quantity {
+            value: state.signals[output.signal.index()],
+            tolerance: limits.tolerance_flow * output.range,
+            m_flow_kg_s: output.edge.map_or(largest_kg_s, size),
+        })
     }
 
     /// Whether something moves on its own that flows depend on.
@@ -93,13 +128,18 @@ impl Stepper {
     }
 }
 
-/// Temperatures at the ports of units with their tolerances, K.
+/// Temperatures at the ports of units, K.
 fn temperatures<'a>(
     state: &'a State,
     limits: &'a AutomaticStep,
-) -> impl Iterator<Item = (f64, f64)> + 'a {
-    let ends = state.network.port_flows.iter().flat_map(|port| [port.t_in_k, port.t_out_k]);
-    ends.map(|t| (t, limits.tolerance_k))
+) -> impl Iterator<Item = Quantity> + 'a {
+    state.network.port_flows.iter().flat_map(|port| {
+        [port.t_in_k, port.t_out_k].map(|value| Quantity {
+            value,
+            tolerance: limits.tolerance_k,
+            m_flow_kg_s: port.m_flow_kg_s.abs(),
+        })
+    })
 }
 
 impl Simulation {
@@ -170,7 +210,7 @@ impl Simulation {
         if fresh || memory.until != self.state.time {
             memory.begin(limits, self.state.time);
             memory.flows.rest(self.stepper.flows(&self.state, limits));
-            memory.outputs.rest(self.stepper.outputs(&self.state, limits));
+            memory.outputs.rest(self.stepper.outputs(&self.state, limits, 0.0));
             memory.temperatures.rest(temperatures(&self.state, limits));
         }
         if self.driven_anew() {
@@ -211,9 +251,12 @@ impl Simulation {
     ) -> Result<Time, RunError> {
         // The outputs moved after the last step, by what was measured at its end.
         let last_s = memory.flows.step_s();
-        let outputs = || self.stepper.outputs(&self.state, limits);
-        let integrating = memory.outputs.miss(last_s, outputs().take(self.stepper.integrating));
-        let moved = memory.outputs.miss(last_s, outputs()).max(memory.grown(integrating));
+        let largest_kg_s = self.stepper.largest_kg_s(&self.state);
+        let outputs = || self.stepper.outputs(&self.state, limits, largest_kg_s);
+        let integrating = outputs().take(self.stepper.integrating);
+        let integrating = memory.outputs.miss(last_s, largest_kg_s, integrating);
+        let moved = memory.outputs.miss(last_s, largest_kg_s, outputs());
+        let moved = moved.max(memory.grown(integrating));
         memory.outputs.keep(last_s, outputs());
         memory.react(limits, moved);
         let (mut end, mut ended) = memory.end(limits, now, event);
@@ -229,7 +272,8 @@ impl Simulation {
             }
             let step = end - now;
             let ratio = if self.stepper.moves(&self.state) {
-                memory.flows.miss(step.as_s(), self.stepper.flows(&self.state, limits))
+                let flows = self.stepper.flows(&self.state, limits);
+                memory.flows.miss(step.as_s(), self.stepper.largest_kg_s(&self.state), flows)
             } else {
                 0.0
             };
@@ -251,8 +295,9 @@ impl Simulation {
     pub(super) fn conclude_automatic(&mut self, dt_s: f64, limits: &AutomaticStep) {
         let mut memory = std::mem::take(&mut self.state.stepping);
         let now = || temperatures(&self.state, limits);
-        let ratios =
-            Ratios { temperatures: memory.temperatures.miss(dt_s, now()), ..self.stepper.ratios };
+        let largest_kg_s = self.stepper.largest_kg_s(&self.state);
+        let missed = memory.temperatures.miss(dt_s, largest_kg_s, now());
+        let ratios = Ratios { temperatures: missed, ..self.stepper.ratios };
         memory.temperatures.keep(dt_s, now());
         memory.conclude(limits, self.state.time, self.stepper.ended, &ratios);
         self.state.stepping = memory;
