@@ -50,10 +50,16 @@ impl Readings {
     /// The readings for each output behind its lags, in `rest`, where `behind` is the lag of the sensor itself; `before`
     /// is work space.
     #[inline(always)]
-    fn follow(&self, ahead: &[Apart], behind: C64, before: RowMut, rest: RowMut) {
+    fn follow(
+        &self,
+        ahead: &[Apart],
+        behind: C64,
+        (before_re, before_im): RowMut,
+        (rest_re, rest_im): RowMut,
+    ) {
         let n = self.by_command.len();
-        let (before_re, before_im) = (&mut before.0[..n], &mut before.1[..n]);
-        let (rest_re, rest_im) = (&mut rest.0[..n], &mut rest.1[..n]);
+        let (before_re, before_im) = (&mut before_re[..n], &mut before_im[..n]);
+        let (rest_re, rest_im) = (&mut rest_re[..n], &mut rest_im[..n]);
         before_re.copy_from_slice(&self.by_command);
         rest_re.copy_from_slice(&self.by_command_rest);
         before_im.fill(0.0);

@@ -69,7 +69,7 @@ impl Rows {
     /// `left^H M right`.
     pub fn between(&self, left: &DVector<C64>, right: &DVector<C64>) -> C64 {
         let (mut re, mut im) = (vec![0.0; self.width], vec![0.0; self.width]);
-        let shares: Vec<C64> = left.iter().map(|share| share.conj()).collect();
+        let shares: Vec<C64> = left.iter().map(C64::conj).collect();
         add_rows(&shares, (&self.re, &self.im), (&mut re, &mut im));
         let entries = re.into_iter().zip(im).map(|(re, im)| C64::new(re, im));
         entries.zip(right.iter()).map(|(entry, right)| entry * right).sum()

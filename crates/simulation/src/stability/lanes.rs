@@ -119,11 +119,11 @@ impl WithSimd for TakeOff<'_> {
 
 /// `own += share other`.
 #[inline(always)]
-fn add<S: Simd>(simd: S, share: C64, other: Row, own: RowMut) {
+fn add<S: Simd>(simd: S, share: C64, other: Row, (own_re, own_im): RowMut) {
     let (other_re, other_rest_re) = S::as_simd_f64s(other.0);
     let (other_im, other_rest_im) = S::as_simd_f64s(other.1);
-    let (own_re, own_rest_re) = S::as_mut_simd_f64s(own.0);
-    let (own_im, own_rest_im) = S::as_mut_simd_f64s(own.1);
+    let (own_re, own_rest_re) = S::as_mut_simd_f64s(own_re);
+    let (own_im, own_rest_im) = S::as_mut_simd_f64s(own_im);
     let parts = splat(simd, share);
     let other = other_re.iter().zip(other_im);
     for ((x, y), (a, b)) in own_re.iter_mut().zip(own_im).zip(other) {
@@ -145,16 +145,16 @@ fn splat<S: Simd>(simd: S, share: C64) -> (S::f64s, S::f64s, S::f64s) {
 
 /// `own += sum of share row`.
 #[inline(always)]
-fn add_four<'a, S: Simd>(simd: S, shares: [C64; LANES], rows: [Row<'a>; LANES], own: RowMut) {
-    let (own_re, rest) = S::as_mut_simd_f64s(own.0);
-    let (own_im, _) = S::as_mut_simd_f64s(own.1);
+fn add_four<'a, S: Simd>(simd: S, shares: [C64; LANES], rows: [Row<'a>; LANES], (re, im): RowMut) {
+    let (own_re, rest) = S::as_mut_simd_f64s(re);
     let vectors = own_re.len();
     if !rest.is_empty() {
         for (share, row) in shares.into_iter().zip(rows) {
-            add(simd, share, row, (&mut *own.0, &mut *own.1));
+            add(simd, share, row, (&mut *re, &mut *im));
         }
         return;
     }
+    let (own_im, _) = S::as_mut_simd_f64s(im);
     let parts = [
         splat(simd, shares[0]),
         splat(simd, shares[1]),
