@@ -165,20 +165,52 @@ impl Experiment {
 
     /// What the sensors make of a simulation.
     pub fn observed(&self, simulated: &Simulated, unknowns: &[Unknown], at: &[f64]) -> Vec<f64> {
-        let mut readings = Vec::with_capacity(self.samples.len());
+        let mut readings = vec![0.0; self.samples.len()];
+        self.observe(simulated, unknowns, at, |_| true, &mut readings);
+        readings
+    }
+
+    /// The same where only flaws of this sensor differ from those of `readings`.
+    pub fn observed_beside(
+        &self,
+        readings: &[f64],
+        sensor: usize,
+        simulated: &Simulated,
+        unknowns: &[Unknown],
+        at: &[f64],
+    ) -> Vec<f64> {
+        let mut readings = readings.to_vec();
+        self.observe(simulated, unknowns, at, |other| other == sensor, &mut readings);
+        readings
+    }
+
+    /// Readings of these sensors, each in its place.
+    fn observe(
+        &self,
+        simulated: &Simulated,
+        unknowns: &[Unknown],
+        at: &[f64],
+        wanted: impl Fn(usize) -> bool,
+        readings: &mut [f64],
+    ) {
+        let mut place = 0;
         for (run, tracks) in self.runs.iter().zip(&simulated.0) {
             for (sensor, track) in
                 tracks.iter().enumerate().filter(|(_, track)| !track.time_s.is_empty())
             {
+                let times = &run.tracks[sensor].time_s;
+                let own = &mut readings[place..place + times.len()];
+                place += times.len();
+                if !wanted(sensor) {
+                    continue;
+                }
                 let response = self.response(sensor, unknowns, at);
                 let behind = lagged(track, self.sensors.sensor[sensor].lag_s + response.lag_s);
-                let times = run.tracks[sensor].time_s.iter();
-                readings.extend(
-                    times.map(|t| response.of(behind.at(t + response.clock_s), *t, run.span_s)),
-                );
+                for (y, t) in own.iter_mut().zip(times) {
+                    *y = response.of(behind.at(t + response.clock_s), *t, run.span_s);
+                }
             }
         }
-        readings
     }
 
     /// Whether another value of it needs another simulation.

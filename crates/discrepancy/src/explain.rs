@@ -11,7 +11,7 @@ use crate::profile::Profile;
 use crate::sanity;
 use crate::search::{Search, Settled};
 use crate::split::{SplitFile, Use, split};
-use crate::uncertainty::{Uncertainties, uncertainties};
+use crate::uncertainty::{Spread, Uncertainties};
 use crate::unknown::{Estimate, Target, Unknown};
 use serde::Serialize;
 use std::time::Instant;
@@ -184,14 +184,16 @@ pub fn explain(
         return Ok(data_problem(problems));
     }
     let uses = split(experiment, split_file)?;
-    let before = match experiment.readings(&[], &[]) {
-        Ok(before) => before,
+    let model = match experiment.simulated(&[], &[], 1) {
+        Ok(model) => model,
         Err(error) => match sanity::keeps_from_running(experiment) {
             problems if problems.is_empty() => return Err(error),
             problems => return Ok(data_problem(problems)),
         },
     };
-    let Uncertainties { sigma, known } = uncertainties(experiment, &before);
+    let before = experiment.observed(&model, &[], &[]);
+    let spread = Spread::new(experiment, model);
+    let Uncertainties { sigma, known } = spread.seen(experiment, &[], &[]);
     watch.lap("uncertainty");
     let problems = sanity::beside(experiment, &before, &sigma);
     watch.lap("sanity");
@@ -205,9 +207,10 @@ pub fn explain(
     // What was fitted foretells what chooses: both together weigh the evidence. What is shown stays untouched.
     let fitted = (0..uses.len()).filter(|&i| uses[i].is_some_and(|u| u != Use::Show)).collect();
     let likelihood = Likelihood { known, ..Likelihood::new(sigma, fitted) };
-    let sigma = likelihood.sigma.clone();
+    let found_sigma = likelihood.sigma.clone();
     let validated = of(Use::Validate);
-    let mut search = Search::new(experiment, &all, tolerances(experiment), likelihood, validated);
+    let beside = tolerances(experiment);
+    let mut search = Search::new(experiment, &spread, &all, beside, likelihood, validated);
     let settled = search.run(&mut watch)?;
     let strained = settled.strained();
     let Settled {
@@ -221,8 +224,9 @@ pub fn explain(
         additions,
         null: _,
         chosen,
+        sigma,
     } = settled;
-    let found = find(experiment, &uses, &sigma, &before, &null_readings)?;
+    let found = find(experiment, &uses, &found_sigma, &before, &null_readings)?;
     watch.lap("find");
     // What the written model gives: the effects alone, every tolerance at its middle.
     let (after, fitted) = match &chosen {
@@ -261,8 +265,9 @@ pub fn compare(
     split_file: Option<&SplitFile>,
 ) -> Result<Vec<Gap>, ExplainError> {
     let uses = split(experiment, split_file)?;
-    let before = experiment.readings(&[], &[])?;
-    let sigma = uncertainties(experiment, &before).sigma;
+    let model = experiment.simulated(&[], &[], 1)?;
+    let before = experiment.observed(&model, &[], &[]);
+    let sigma = Spread::new(experiment, model).seen(experiment, &[], &[]).sigma;
     Ok(gaps(experiment, &uses, &sigma, &before, &before, &before))
 }
 

@@ -6,8 +6,8 @@
 //! `-F/2 - log det(I + S J^T J S)/2`, `J` the sensitivities of `e`, `S = diag(sd)`, but for a constant of the data.
 //!
 //! **Numerics** one simulation per unknown and round of sensitivities is what costs. Flaws of compared sensors need none.
-//! Sensitivities that another fit has found near by ([`Slopes`]) are a start that Broyden's rule corrects; a thorough fit
-//! renews all of them at its end.
+//! Their sensitivities are those of each point; those of the others, which another fit may have found near by ([`Slopes`]), Broyden's
+//! rule corrects, and a thorough fit renews them at its end.
 //!
 //! **Sources** Laplace's method: MacKay 2003, chapter 27 (key `mackay2003`).
 
@@ -28,6 +28,8 @@ const MAX_STEPS: u32 = 25;
 const ENOUGH: f64 = 0.05;
 /// Nats that sensitivities of elsewhere may promise without a step that gains, before they are simulated again.
 const PROMISED: f64 = 2.0;
+/// Moments of a jump that are looked at, equally far apart.
+const MOMENTS: u32 = 50;
 /// Coordinates stay within so many standard deviations of their prior.
 pub(crate) const BOUND_SD: f64 = 6.0;
 
@@ -139,7 +141,8 @@ pub fn fit(
     let problem = Problem { experiment, unknowns, likelihood, care };
     let n = unknowns.len();
     let mut at: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
-    let mut here = problem.evaluate(&at)?;
+    let here = problem.evaluate(&at)?;
+    let mut here = problem.best_moment(&mut at, here);
     let mut slopes = Slopes::new();
     let of_known = |j: &usize| known.contains_key(&unknowns[*j].target);
     let (old, new): (Vec<usize>, Vec<usize>) = (0..n).partition(of_known);
@@ -149,6 +152,9 @@ pub fn fit(
     }
     problem.differences(&at, &here, &new, &mut slopes)?;
     let all: Vec<usize> = (0..n).collect();
+    // Those of flaws of compared sensors need no simulation: they are those of each point.
+    let needs_none = |j: &usize| !experiment.is_simulated(&unknowns[*j].target);
+    let of_sensors: Vec<usize> = (0..n).filter(needs_none).collect();
     let renewed = if care == Care::Quick { &new } else { &all };
     let mut sensitivity = DMatrix::zeros(likelihood.fitted.len(), n);
     problem.columns(&slopes, &all, &mut sensitivity);
@@ -194,9 +200,14 @@ pub fn fit(
                 sensitivity += miss * scaled.transpose() / size;
                 fresh = false;
             }
-            if trial.objective < here.objective {
+            let better = trial.objective < here.objective;
+            if better {
                 gained = here.objective - trial.objective;
                 (at, here) = (there, trial);
+                problem.differences(&at, &here, &of_sensors, &mut slopes)?;
+            }
+            problem.columns(&slopes, &of_sensors, &mut sensitivity);
+            if better {
                 damping = (damping * 0.2).max(1e-6);
                 break;
             }
@@ -248,12 +259,41 @@ impl Problem<'_> {
     fn evaluate(&self, at: &[f64]) -> Result<Point, ExplainError> {
         let simulated = self.experiment.simulated(self.unknowns, at, 1)?;
         let readings = self.experiment.observed(&simulated, self.unknowns, at);
+        Ok(self.point(simulated, readings, at))
+    }
+
+    fn point(&self, simulated: Simulated, readings: Vec<f64>, at: &[f64]) -> Point {
         let z = self.likelihood.z(self.experiment, &readings);
         let e = self.likelihood.whitened(|i| z[i]);
         let prior = self.unknowns.iter().zip(at).map(|(u, x)| ((x - u.mean) / u.sd).powi(2));
         let counted = self.likelihood.counted(&e);
         let objective = counted.0.norm_squared() + prior.sum::<f64>();
-        Ok(Point { simulated, readings, e, counted, objective })
+        Point { simulated, readings, e, counted, objective }
+    }
+
+    /// The best moment of a jump of a compared sensor, of many: between two readings nothing changes with it, and no slope leads there.
+    fn best_moment(&self, at: &mut [f64], mut here: Point) -> Point {
+        for j in 0..at.len() {
+            let target = &self.unknowns[j].target;
+            let Target::StepShare(sensor) = *target else { continue };
+            if self.experiment.is_simulated(target) {
+                continue;
+            }
+            let mut best = at[j];
+            for k in 1..MOMENTS {
+                at[j] = f64::from(k) / f64::from(MOMENTS);
+                let (known, simulated) = (&here.readings, &here.simulated);
+                let readings =
+                    self.experiment.observed_beside(known, sensor, simulated, self.unknowns, at);
+                let there = self.point(Simulated::default(), readings, at);
+                if there.objective < here.objective {
+                    best = at[j];
+                    here = Point { simulated: here.simulated, ..there };
+                }
+            }
+            at[j] = best;
+        }
+        here
     }
 
     fn prior_slope(&self, at: &[f64]) -> DVector<f64> {
@@ -272,10 +312,14 @@ impl Problem<'_> {
         let toward = |j: usize, step: f64| -> Result<Vec<f64>, ExplainError> {
             let mut beside = at.to_vec();
             beside[j] += step;
-            let changed = if self.experiment.is_simulated(&self.unknowns[j].target) {
+            let target = &self.unknowns[j].target;
+            let (readings, simulated) = (&here.readings, &here.simulated);
+            let changed = if self.experiment.is_simulated(target) {
                 self.experiment.readings(self.unknowns, &beside)?
+            } else if let Some(sensor) = target.sensor() {
+                self.experiment.observed_beside(readings, sensor, simulated, self.unknowns, &beside)
             } else {
-                self.experiment.observed(&here.simulated, self.unknowns, &beside)
+                self.experiment.observed(simulated, self.unknowns, &beside)
             };
             Ok(changed.iter().zip(&here.readings).map(|(y, y0)| (y - y0) / step).collect())
         };

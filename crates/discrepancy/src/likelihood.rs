@@ -3,6 +3,7 @@
 use crate::experiment::Experiment;
 use crate::noise::{Gain, Noise, Predicted, Residual, Tails, scale_beside, whitened};
 use crate::significance::squares;
+use crate::uncertainty::Uncertainties;
 use nalgebra::DVector;
 use std::collections::HashMap;
 
@@ -69,6 +70,12 @@ impl Likelihood {
         (DVector::from_vec(values), DVector::from_vec(slopes))
     }
 
+    /// Goes by another prediction.
+    pub fn predict(&mut self, Uncertainties { sigma, known }: Uncertainties) {
+        (self.predicted, self.known) = (sigma, known);
+        self.forget();
+    }
+
     /// Scales what is predicted of each sensor beside what is known well by what these readings leave behind.
     pub fn rescale(&mut self, experiment: &Experiment, readings: &[f64]) {
         for sensor in 0..experiment.sensors.sensor.len() {
@@ -82,6 +89,20 @@ impl Likelihood {
             let scale = scale_beside(&fitted.map(of).collect::<Vec<_>>());
             for i in (0..experiment.samples.len()).filter(own) {
                 self.sigma[i] = of(i).scaled(scale);
+            }
+        }
+    }
+
+    /// Takes what lies far off alone for as uncertain as its square counts ([`squares`]), until something is learned: a moment that was
+    /// missed by a second would draw the wrong effect to it.
+    pub fn temper(&mut self, experiment: &Experiment, readings: &[f64]) {
+        let z = self.z(experiment, readings);
+        let group = |i: usize| (experiment.samples[i].run, experiment.samples[i].sensor);
+        let all: Vec<usize> = (0..z.len()).collect();
+        for own in all.chunk_by(|&i, &j| group(i) == group(j)) {
+            let counted = squares(&z[own[0]..=own[own.len() - 1]]);
+            for (&i, counted) in own.iter().zip(counted) {
+                self.sigma[i] *= (z[i].abs() / counted.sqrt().max(1e-300)).max(1.0);
             }
         }
     }
@@ -110,5 +131,31 @@ impl Likelihood {
         self.filter.clear();
         self.noises.clear();
         self.temperature = 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+
+    #[test]
+    fn what_lies_far_off_alone_counts_as_three() {
+        let experiment = bench::experiment(&[]);
+        let n = experiment.samples.len();
+        let mut readings: Vec<f64> = experiment.samples.iter().map(|s| s.value).collect();
+        // One reading 12 sigma off; three in a row 9, 12 and 15, as the best of two beside each other.
+        for (i, z) in [(20, 12.0), (100, 9.0), (101, 12.0), (102, 15.0)] {
+            readings[i] -= 0.1 * z;
+        }
+        let mut likelihood = Likelihood::new(vec![0.1; n], (0..n).collect());
+        likelihood.temper(&experiment, &readings);
+        let z = likelihood.z(&experiment, &readings);
+        for (i, expected) in [(20, 3.0), (100, 9.0), (101, 12.0), (102, 12.0), (50, 0.0)] {
+            assert!((z[i] - expected).abs() < 1e-6, "{i}: {}", z[i]);
+        }
+        // What is learned later begins with what was predicted.
+        likelihood.forget();
+        assert_eq!(likelihood.sigma, vec![0.1; n]);
     }
 }

@@ -88,11 +88,11 @@ impl Without<'_> {
             fitted || !candidate.within(screened.start)
         });
         looked.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        // Of one effect at one place the best variant.
+        // Of one parameter at one place the best variant.
         let mut seen = HashSet::new();
         looked.retain(|screened| {
             let candidate = &all[screened.candidate];
-            seen.insert((candidate.id, candidate.component.as_str()))
+            seen.insert((candidate.id, candidate.component.as_str(), candidate.parameter.0))
         });
         looked
     }
@@ -106,11 +106,15 @@ impl Without<'_> {
     ) -> Option<Screened> {
         let own = &candidate.unknown;
         let j = self.unknowns.iter().position(|u| u.target == own.target)?;
-        if self.unknowns[j].logarithmic != own.logarithmic {
-            return None;
-        }
+        // Coordinate of the effect, and slope of that of the tolerance by it.
+        let value = self.unknowns[j].value(self.fit.at[j]);
+        let (at, slope) = match (self.unknowns[j].logarithmic, own.logarithmic) {
+            (false, true) if value > 0.0 => (value.ln(), value),
+            (one, other) if one == other => (self.fit.at[j], 1.0),
+            _ => return None,
+        };
         let n = &self.fit.sensitivity;
-        let d = n.column(j) * own.sd;
+        let d = n.column(j) * (slope * own.sd);
         let taken = factor.solve(&n.tr_mul(&d));
         let direction = &d - n * &taken;
         let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
@@ -126,7 +130,7 @@ impl Without<'_> {
         if gain > 0.5 * (self.fit.e.norm_squared() + strain) {
             return None;
         }
-        let start = self.fit.at[j] + a * (own.sd - taken[j]);
+        let start = at + a * (own.sd - taken[j] / slope);
         let start = start.clamp(own.mean - 2.0 * own.sd, own.mean + 2.0 * own.sd);
         Some(Screened { candidate: place, start, gain, direction })
     }
@@ -147,7 +151,9 @@ impl Without<'_> {
         let readings = if own.any(|unknown| self.experiment.is_simulated(&unknown.target)) {
             self.experiment.readings(&unknowns, &at).ok()?
         } else {
-            self.experiment.observed(&self.fit.simulated, &unknowns, &at)
+            let (readings, simulated) = (&self.fit.readings, &self.fit.simulated);
+            let sensor = candidate.unknown.target.sensor()?;
+            self.experiment.observed_beside(readings, sensor, simulated, &unknowns, &at)
         };
         let z = |i: usize| (readings[i] - self.fit.readings[i]) / self.likelihood.sigma[i];
         Some(self.likelihood.whitened(z).component_mul(&self.fit.weight))
@@ -211,4 +217,51 @@ pub fn pairs(looked: &[Screened], e: &DVector<f64>, most: usize) -> Vec<(usize, 
     all.sort_by(|a, b| b.2.total_cmp(&a.2));
     all.truncate(most);
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench;
+    use crate::catalogue::{candidates, tolerances};
+    use crate::fit::{Care, Slopes, fit};
+    use crate::unknown::Target;
+
+    #[test]
+    fn a_lag_that_a_tolerance_stands_for_is_seen() {
+        // The tolerance of 1.5 s takes up 7 s, at 4.7 standard deviations: 0.5 4.7^2 = 11 nats are what a slow sensor would gain.
+        let house = 3;
+        let experiment = bench::experiment(&[(Unknown::plain(Target::Lag(house), 0.0, 1.0), 7.0)]);
+        let all = candidates(&experiment);
+        let base = tolerances(&experiment);
+        let n = experiment.samples.len();
+        let likelihood = Likelihood::new(vec![0.02; n], (0..n).collect());
+        let null = fit(&experiment, &base, &likelihood, &Slopes::new(), Care::Alone).unwrap();
+        let lag = base.iter().position(|u| u.target == Target::Lag(house)).unwrap();
+        assert!((null.at[lag] - 7.0).abs() < 0.5, "{}", null.at[lag]);
+        let experiment = &experiment;
+        let without = Without { experiment, unknowns: &base, likelihood: &likelihood, fit: &null };
+        let open: Vec<usize> = (0..all.len()).collect();
+        let looked = without.screen(&all, &open);
+        let is_slow = |s: &&Screened| {
+            (all[s.candidate].id, all[s.candidate].component.as_str()) == ("S4", "T_house")
+        };
+        let slow = looked.iter().find(is_slow).unwrap();
+        let gain = 0.5 * (null.at[lag] / base[lag].sd).powi(2);
+        assert!((slow.gain - gain).abs() < 0.2 * gain, "{} {gain}", slow.gain);
+        // Given free, it takes over what the clock stood for.
+        assert!((7.0..20.0).contains(&slow.start.exp()), "{}", slow.start.exp());
+    }
+
+    #[test]
+    fn readings_beside_others_are_those_of_all() {
+        let experiment = bench::experiment(&[]);
+        let simulated = experiment.simulated(&[], &[], 1).unwrap();
+        let lag = [Unknown::plain(Target::Lag(3), 0.0, 1.0)];
+        let plain = experiment.observed(&simulated, &lag, &[0.0]);
+        let slow = experiment.observed(&simulated, &lag, &[20.0]);
+        let beside = experiment.observed_beside(&plain, 3, &simulated, &lag, &[20.0]);
+        assert_eq!(beside, slow);
+        assert_ne!(beside, plain);
+    }
 }

@@ -13,10 +13,10 @@ use crate::explain::{Finding, Stopwatch, Verdict};
 use crate::fit::{Care, Fit, Slopes, fit};
 use crate::likelihood::Likelihood;
 use crate::next::{Addition, Rivals};
-use crate::profile::profile;
 use crate::screen::{Screened, Without, kept};
 use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
+use crate::uncertainty::Spread;
 use crate::unknown::Unknown;
 use nalgebra::DVector;
 pub(crate) use settled::Settled;
@@ -52,6 +52,8 @@ const LEAVES: f64 = 1.6;
 const TAKES: f64 = 0.1;
 /// Whatever was found, more than this is left by another cause, standard deviations.
 const TOO_MUCH: f64 = 4.0;
+/// ... or where a sensor leaves more than [`UNEXPLAINED`] beyond chance, and this share of what it showed.
+const LEFT: f64 = 0.25;
 /// What comes so near the best one, nats, is fitted with care; at most so many.
 const CLOSE: f64 = 8.0;
 const MOST_CLOSE: usize = 4;
@@ -89,6 +91,7 @@ struct Round {
 
 pub(crate) struct Search<'a> {
     experiment: &'a Experiment,
+    spread: &'a Spread,
     all: &'a [Candidate],
     base: Vec<Unknown>,
     likelihood: Likelihood,
@@ -100,13 +103,14 @@ pub(crate) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(crate) fn new(
         experiment: &'a Experiment,
+        spread: &'a Spread,
         all: &'a [Candidate],
         base: Vec<Unknown>,
         likelihood: Likelihood,
         validated: Vec<usize>,
     ) -> Self {
         let (taken, slopes) = (Vec::new(), Slopes::new());
-        Self { experiment, all, base, likelihood, validated, taken, slopes }
+        Self { experiment, spread, all, base, likelihood, validated, taken, slopes }
     }
 
     pub(crate) fn run(&mut self, watch: &mut Stopwatch) -> Result<Settled, ExplainError> {
@@ -117,8 +121,10 @@ impl<'a> Search<'a> {
             self.likelihood.forget();
             let care = if is_first { Care::Alone } else { Care::Quick };
             let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
+            self.predict(&self.base.clone(), &null.at);
             // As large as what is predicted beside the noise of the sensors really is.
             self.likelihood.rescale(self.experiment, &null.readings);
+            self.likelihood.temper(self.experiment, &null.readings);
             let from = |(u, at): (&Unknown, &f64)| Unknown { start: *at, ..u.clone() };
             let started: Vec<Unknown> = self.base.iter().zip(&null.at).map(from).collect();
             let (likelihood, slopes) = (&self.likelihood, &null.slopes);
@@ -173,11 +179,13 @@ impl<'a> Search<'a> {
             let (base, slopes, temperature) = started;
             first = first.or(Some(First { round, temperature, base, slopes }));
         }
+        self.joint(&mut settled)?;
         if let Some(first) = first {
             self.pair(&first, &mut settled)?;
             watch.lap("pairs");
         }
         self.doubt(&mut settled)?;
+        settled.sigma.clone_from(&self.likelihood.sigma);
         settled.taken.clone_from(&self.taken);
         Ok(settled)
     }
@@ -197,6 +205,11 @@ impl<'a> Search<'a> {
         let members = class.iter().filter_map(of).collect();
         let (experiment, likelihood) = (self.experiment, &self.likelihood);
         Rivals { experiment, likelihood, all: self.all, members }.additions()
+    }
+
+    /// Predicts what might have been as the sensors of a fit show it.
+    fn predict(&mut self, unknowns: &[Unknown], at: &[f64]) {
+        self.likelihood.predict(self.spread.seen(self.experiment, unknowns, at));
     }
 
     fn z(&self, readings: &[f64]) -> f64 {
@@ -265,6 +278,7 @@ impl<'a> Search<'a> {
         let (quick, e) = (quick.readings, quick.e);
         let none = Round { quick, e, looked, null_z, tried: Vec::new(), findings: Vec::new() };
         let Some(best) = rough.first() else { return Ok(Some(none)) };
+        self.predict(&best.unknowns, &best.fit.at);
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
@@ -332,9 +346,7 @@ impl<'a> Search<'a> {
     ) -> Result<(), ExplainError> {
         self.taken.extend(&tried.candidates);
         for (finding, &place) in findings.iter().zip(&tried.places) {
-            let (unknowns, fit) = (&tried.unknowns, &tried.fit);
-            let profile = profile(self.experiment, unknowns, &self.likelihood, fit, place);
-            settled.effects.push(finding.clone().with_profile(profile, &unknowns[place]));
+            settled.effects.push(self.valued(finding.clone(), tried, place));
         }
         let started = tried.unknowns.iter().zip(&tried.fit.at);
         self.base = started.map(|(u, at)| Unknown { start: *at, ..u.clone() }).collect();
@@ -359,6 +371,7 @@ mod tests {
     use super::*;
     use crate::bench;
     use crate::catalogue::{candidates, effect_target, tolerances};
+    use crate::unknown::Target;
 
     fn loss(pipe: &str, factor: f64) -> (Unknown, f64) {
         (Unknown::plain(effect_target("P2", pipe, "factor"), 1.0, 1.0), factor)
@@ -372,15 +385,31 @@ mod tests {
         all
     }
 
-    fn search<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> Search<'a> {
+    fn spread(experiment: &Experiment) -> Spread {
+        Spread::new(experiment, experiment.simulated(&[], &[], 1).unwrap())
+    }
+
+    fn search<'a>(
+        experiment: &'a Experiment,
+        spread: &'a Spread,
+        all: &'a [Candidate],
+    ) -> Search<'a> {
         let n = experiment.samples.len();
         let likelihood = Likelihood::new(vec![0.05; n], (0..n).collect());
-        Search::new(experiment, all, tolerances(experiment), likelihood, (0..n).collect())
+        let base = tolerances(experiment);
+        Search::new(experiment, spread, all, base, likelihood, (0..n).collect())
     }
 
     /// A search that has taken both candidates, one after the other.
-    fn with_both<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> (Search<'a>, Settled) {
-        let (mut search, mut settled) = (search(experiment, all), Settled::nothing());
+    fn with_both<'a>(
+        experiment: &'a Experiment,
+        spread: &'a Spread,
+        all: &'a [Candidate],
+    ) -> (Search<'a>, Settled) {
+        let (mut search, mut settled) = (search(experiment, spread, all), Settled::nothing());
+        let unknowns: &[Unknown] = &search.base;
+        let at: Vec<f64> = unknowns.iter().map(|u| u.start).collect();
+        settled.null_readings = experiment.readings(unknowns, &at).unwrap();
         for k in 0..2 {
             let start = Start { candidates: vec![k], at: vec![0.0], earlier: None };
             let mut tried = search.common().fits(&[start], Care::Quick);
@@ -396,7 +425,8 @@ mod tests {
     fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
         let only_far = bench::experiment(&[loss("far", 3.0)]);
         let all = insulations(&only_far);
-        let (mut search, mut settled) = with_both(&only_far, &all);
+        let might = spread(&only_far);
+        let (mut search, mut settled) = with_both(&only_far, &might, &all);
         search.step_back(&mut settled).unwrap();
         assert_eq!(search.taken, [1]);
         assert_eq!((settled.effects.len(), settled.effects[0].component.as_str()), (1, "far"));
@@ -406,16 +436,26 @@ mod tests {
 
         let of_both = bench::experiment(&[loss("near", 3.0), loss("far", 3.0)]);
         let all = insulations(&of_both);
-        let (mut search, mut settled) = with_both(&of_both, &all);
+        let might = spread(&of_both);
+        let (mut search, mut settled) = with_both(&of_both, &might, &all);
         search.step_back(&mut settled).unwrap();
         assert_eq!((search.taken.len(), settled.effects.len()), (2, 2));
+        // The first one was fitted without the second: of its value only a fit of both knows.
+        let off = |f: &Finding| (f.estimate.value - 3.0).abs();
+        assert!(off(&settled.effects[0]) > 0.3, "{:?}", settled.effects[0]);
+        search.joint(&mut settled).unwrap();
+        for effect in &settled.effects {
+            let holds = (effect.estimate.lo..=effect.estimate.hi).contains(&3.0);
+            assert!(holds && off(effect) < 0.1, "{effect:?}");
+        }
     }
 
     #[test]
     fn what_leaves_far_more_than_another_is_refuted() {
         let experiment = bench::experiment(&[loss("far", 3.0)]);
         let all = insulations(&experiment);
-        let search = search(&experiment, &all);
+        let might = spread(&experiment);
+        let search = search(&experiment, &might, &all);
         let start = |k| Start { candidates: vec![k], at: vec![0.0], earlier: None };
         let mut tried = search.common().fits(&[start(0), start(1)], Care::Quick);
         let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
@@ -435,7 +475,8 @@ mod tests {
         // The near pipe loses less, the far one more: the house hardly sees it.
         let experiment = bench::experiment(&[loss("near", 0.4), loss("far", 2.0)]);
         let all = insulations(&experiment);
-        let mut search = search(&experiment, &all);
+        let might = spread(&experiment);
+        let mut search = search(&experiment, &might, &all);
         let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
         let null = search.leave_out(null.unwrap());
         let z = search.z(&null.readings);
@@ -454,5 +495,45 @@ mod tests {
             settled.effects.iter().find(|f| f.component == pipe).unwrap().estimate.value
         };
         assert!((value("near") - 0.4).abs() < 0.15 && (value("far") - 2.0).abs() < 0.3);
+    }
+
+    #[test]
+    fn a_jump_is_found_where_it_was_and_is_no_drift() {
+        let house = 3;
+        let jump = (Unknown::plain(Target::Step(house), 0.0, 2.5), -1.6);
+        let moment = (Unknown::plain(Target::StepShare(house), 0.5, 0.3), 0.42);
+        let experiment = bench::experiment(&[jump, moment]);
+        let mut all = candidates(&experiment);
+        all.retain(|c| c.id == "S3" && c.component == "T_house");
+        let might = spread(&experiment);
+        let mut search = search(&experiment, &might, &all);
+        let settled = search.run(&mut Stopwatch::new()).unwrap();
+        let [found] = &settled.effects[..] else { panic!("{:?}", settled.effects) };
+        assert_eq!((found.id, found.parameter), ("S3", "step_k"));
+        assert!((found.estimate.value + 1.6).abs() < 0.05, "{:?}", found.estimate);
+        let share = found.beside[0].1;
+        assert!((share - 0.42).abs() < 0.02, "{share}");
+        // The drift was tried too; of one effect at one place the best counts.
+        assert_eq!(settled.tried.len(), 1);
+    }
+
+    #[test]
+    fn what_leaves_much_at_a_sensor_is_another_cause() {
+        // Beyond what the insulation of the far pipe could be, the sensor behind it swings: nothing that is tried.
+        let mut experiment = bench::experiment(&[loss("far", 3.0)]);
+        let all = insulations(&experiment);
+        let of = |experiment: &Experiment| {
+            let might = spread(experiment);
+            let mut search = search(experiment, &might, &all);
+            search.run(&mut Stopwatch::new()).unwrap()
+        };
+        assert_eq!(of(&experiment).verdict, Verdict::Named);
+        for sample in experiment.samples.iter_mut().filter(|s| s.sensor == 3) {
+            let on = (sample.time_s / 300.0) as usize % 2 == 0;
+            sample.value += if on { 1.5 } else { -1.5 };
+        }
+        let settled = of(&experiment);
+        assert_eq!(settled.verdict, Verdict::Unexplained, "{}", settled.because);
+        assert!(settled.effects.is_empty() && settled.chosen.is_none());
     }
 }

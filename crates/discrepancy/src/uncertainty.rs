@@ -15,7 +15,7 @@
 
 use crate::cores::on_all_cores;
 use crate::data::Track;
-use crate::experiment::{Experiment, Sample};
+use crate::experiment::{Experiment, Sample, Simulated};
 use crate::grid;
 use crate::sensors::{Role, Sensor};
 use crate::unknown::{Target, Unknown};
@@ -62,40 +62,69 @@ pub struct Uncertainties {
     pub known: Vec<f64>,
 }
 
-/// Standard deviations of all samples; `readings` are those of the model as it is.
-pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Uncertainties {
-    let starts: Vec<(Unknown, f64)> = (0..experiment.runs.len())
-        .filter_map(|run| {
-            let first = experiment.first(run)?;
-            Some((Unknown::plain(Target::Initial(run), 0.0, 1.0), first.uneven_k))
-        })
-        .collect();
-    let (unknowns, at): (Vec<_>, Vec<_>) = starts.into_iter().unzip();
-    // Warmer, or where the model does not run so, colder.
-    let started = |sign: f64| {
-        let at: Vec<f64> = at.iter().map(|x| sign * x).collect();
-        experiment.readings(&unknowns, &at)
-    };
-    let otherwise = |other: Option<Experiment>| {
-        other.map_or_else(|| Ok(readings.to_vec()), |other| other.readings(&[], &[]))
-    };
-    let others = on_all_cores(DRAWS + 5, |k| match k {
-        0 => experiment.simulated(&[], &[], 2).map(|finer| experiment.observed(&finer, &[], &[])),
-        1 => started(1.0).or_else(|_| started(-1.0)),
-        2 => otherwise(grid::finer(experiment)),
-        3 => otherwise(switched_at(experiment, -LATEST)),
-        4 => otherwise(switched_at(experiment, LATEST)),
-        _ => drawn(experiment, k as u64).readings(&[], &[]),
-    });
-    // What was drawn and does not run is not what was.
-    let mut others = others.into_iter().map(Result::ok);
-    let [finer, start, layers, early, late] = [(); 5].map(|()| others.next().flatten());
-    let draws: Vec<Vec<f64>> = others.flatten().collect();
+/// What the model might have given: every compared quantity before the sensors.
+pub struct Spread {
+    /// As the model is.
+    model: Simulated,
+    /// In half the step; from water that begins otherwise; of more layers; with commands switched early, and late.
+    others: [Option<Simulated>; 5],
+    /// With inputs drawn anew.
+    draws: Vec<Simulated>,
+}
+
+impl Spread {
+    /// From simulations; `model` is the one of the model as it is.
+    pub fn new(experiment: &Experiment, model: Simulated) -> Self {
+        let starts: Vec<(Unknown, f64)> = (0..experiment.runs.len())
+            .filter_map(|run| {
+                let first = experiment.first(run)?;
+                Some((Unknown::plain(Target::Initial(run), 0.0, 1.0), first.uneven_k))
+            })
+            .collect();
+        let (unknowns, at): (Vec<_>, Vec<_>) = starts.into_iter().unzip();
+        // Warmer, or where the model does not run so, colder.
+        let started = |sign: f64| {
+            let at: Vec<f64> = at.iter().map(|x| sign * x).collect();
+            experiment.simulated(&unknowns, &at, 1)
+        };
+        let plain = |other: Experiment| other.simulated(&[], &[], 1).ok();
+        // What was drawn and does not run is not what was.
+        let all = on_all_cores(DRAWS + 5, |k| match k {
+            0 => experiment.simulated(&[], &[], 2).ok(),
+            1 => started(1.0).or_else(|_| started(-1.0)).ok(),
+            2 => grid::finer(experiment).and_then(plain),
+            3 => switched_at(experiment, -LATEST).and_then(plain),
+            4 => switched_at(experiment, LATEST).and_then(plain),
+            _ => plain(drawn(experiment, k as u64)),
+        });
+        let mut all = all.into_iter();
+        let others = [(); 5].map(|()| all.next().flatten());
+        Self { model, others, draws: all.flatten().collect() }
+    }
+
+    /// Standard deviations of all samples as these flaws of their sensors show what might have been: a slow one keeps for a
+    /// while what a moment has left open.
+    pub fn seen(&self, experiment: &Experiment, unknowns: &[Unknown], at: &[f64]) -> Uncertainties {
+        let observed = |simulated: &Simulated| experiment.observed(simulated, unknowns, at);
+        let readings = observed(&self.model);
+        let others = self.others.each_ref().map(|other| other.as_ref().map(observed));
+        let draws: Vec<Vec<f64>> = self.draws.iter().map(observed).collect();
+        uncertainties(experiment, &readings, &others, &draws)
+    }
+}
+
+/// Standard deviations of all samples from readings of the model as it is, and as it might have been (see [`Spread`]).
+fn uncertainties(
+    experiment: &Experiment,
+    readings: &[f64],
+    [finer, start, layers, early, late]: &[Option<Vec<f64>>; 5],
+    draws: &[Vec<f64>],
+) -> Uncertainties {
     let away = |other: &Option<Vec<f64>>, i: usize| {
         other.as_ref().map_or(0.0, |other| other[i] - readings[i])
     };
     // The moment of a switch: equally distributed between its earliest and its latest.
-    let switched = |i: usize| away(&early, i).powi(2).max(away(&late, i).powi(2)) / 3.0;
+    let switched = |i: usize| away(early, i).powi(2).max(away(late, i).powi(2)) / 3.0;
     let drawn = |i: usize| {
         let squares = draws.iter().map(|draw| (draw[i] - readings[i]).powi(2));
         squares.sum::<f64>() / draws.len().max(1) as f64
@@ -121,8 +150,8 @@ pub fn uncertainties(experiment: &Experiment, readings: &[f64]) -> Uncertainties
             (sum + squares[j], of + switched[j], count + 1.0)
         });
         let noise = experiment.accuracy[sample.sensor].noise;
-        let layers = unknown_mixing * grid::WHOLE * away(&layers, i);
-        let rest = away(&finer, i).powi(2) + away(&start, i).powi(2) + layers * layers;
+        let layers = unknown_mixing * grid::WHOLE * away(layers, i);
+        let rest = away(finer, i).powi(2) + away(start, i).powi(2) + layers * layers;
         let all = noise * noise + moved * moved + rest + sum / count;
         (all.sqrt(), (noise * noise + of_switches / count).sqrt())
     };
@@ -342,5 +371,45 @@ mod tests {
         // Readings of nothing stay nothing.
         let still = Track { time_s: vec![0.0, 10.0, 20.0], value: vec![0.0; 3] };
         assert_eq!(redrawn(&still, 0.1, Kind::Flow, &mut Pcg32::new(1, 1)).value, [0.0; 3]);
+    }
+
+    #[test]
+    fn a_slow_sensor_keeps_what_a_moment_has_left_open() {
+        use crate::bench;
+        let experiment = bench::experiment(&[]);
+        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap());
+        let slow = [Unknown::plain(Target::Lag(2), 0.0, 1.0)];
+        let [fast, slow] = [0.0, 40.0].map(|lag_s| spread.seen(&experiment, &slow, &[lag_s]).sigma);
+        // The front passes the middle about a minute after 1800 s; at 1990 s it is over, but not for a sensor of 40 s.
+        let at = |time_s: f64, sensor: usize| {
+            let mut samples = experiment.samples.iter();
+            samples.position(|s| s.sensor == sensor && s.time_s == time_s).unwrap()
+        };
+        let before = at(1500.0, 2);
+        assert!(slow[before] < 1.01 * fast[before], "{} {}", slow[before], fast[before]);
+        let (during, after) = (at(1900.0, 2), at(2060.0, 2));
+        assert!(slow[after] > 1.3 * fast[after], "{} {}", slow[after], fast[after]);
+        assert!(slow[during] < fast[during], "{} {}", slow[during], fast[during]);
+        // Others are as they were.
+        let house = at(2060.0, 3);
+        assert_eq!(slow[house], fast[house]);
+    }
+
+    #[test]
+    fn beside_a_pause_a_flow_read_on_its_way_may_have_been_either() {
+        // Read on its way at 20 s: what flowed between 10 and 20 s is anything from nothing to twice as much as the line says.
+        let track = Track {
+            time_s: (0..6).map(|k| 10.0 * f64::from(k)).collect(),
+            value: vec![0.0, 0.0, 0.3, 1.0, 1.0, 1.0],
+        };
+        let middle = |draw| {
+            let drawn = redrawn(&track, 0.0, Kind::Flow, &mut Pcg32::new(1, draw));
+            drawn.at(15.0)
+        };
+        let all: Vec<f64> = (0..200).map(middle).collect();
+        let mean = all.iter().sum::<f64>() / 200.0;
+        let sd = (all.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / 200.0).sqrt();
+        // (0.5 +- 1/root 12) of 0.3.
+        assert!((mean - 0.15).abs() < 0.02 && (sd - 0.087).abs() < 0.02, "{mean} {sd}");
     }
 }

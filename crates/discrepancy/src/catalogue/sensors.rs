@@ -24,14 +24,8 @@ const LAG: f64 = 0.2;
 fn unknown_lag_s(experiment: &Experiment, i: usize) -> f64 {
     let sensor = &experiment.sensors.sensor[i];
     let known_s = LAG * sensor.lag_s / 3.0_f64.sqrt();
-    let more_s = if sensor.si() != "k" {
-        let intervals = experiment.runs.iter().map(|run| interval_s(&run.tracks[i]));
-        intervals.fold(0.0, f64::max) / 12.0_f64.sqrt()
-    } else if at_outlet(experiment, sensor) {
-        Known::of(experiment).outlet_lag_s
-    } else {
-        0.0
-    };
+    let more_s =
+        if at_outlet(experiment, sensor) { Known::of(experiment).outlet_lag_s } else { 0.0 };
     LAG_S.hypot(known_s).hypot(more_s)
 }
 

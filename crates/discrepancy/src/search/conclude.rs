@@ -2,11 +2,12 @@
 
 use super::wins::{EVEN, foretells, surely_foretells, together, wins};
 use super::{
-    BEYOND, DIFFERS, EXPLAINED, LEAVES, MOST_TOGETHER, PARALLEL, Round, Search, Settled, TAKES,
-    TOO_MUCH, UNEXPLAINED, excess, prior,
+    BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
+    TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
 };
 use crate::error::ExplainError;
 use crate::explain::{Finding, Verdict};
+use crate::significance::differs;
 use crate::trial::cosine;
 
 impl Search<'_> {
@@ -28,13 +29,26 @@ impl Search<'_> {
             verdict(&round.findings, settled.class.len(), round.null_z, worst);
     }
 
-    /// Effects that leave far too much are not the cause; nor do two sensors begin to drift at once where one cause of the plant may,
+    /// Effects that leave far too much are not the cause, nor those that leave much of what a sensor shows; nor do two sensors begin to drift at once where one cause of the plant may,
     /// or three effects show for the first time together.
     pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
-        let Some((unknowns, at)) = &settled.chosen else { return Ok(()) };
-        let z = self.z(&self.experiment.readings(unknowns, at)?);
+        let (unknowns, at) = settled.chosen.as_ref().unwrap_or(&settled.null);
+        self.predict(unknowns, at);
+        let readings = self.experiment.readings(unknowns, at)?;
+        self.likelihood.rescale(self.experiment, &readings);
+        if settled.chosen.is_none() {
+            return Ok(());
+        }
+        let z = self.z(&readings);
+        let worst = |readings: &[f64]| {
+            let (sigma, fitted) = (&self.likelihood.sigma, &self.likelihood.fitted);
+            differs(self.experiment, sigma, readings, fitted)
+        };
+        let left = worst(&readings);
+        let other =
+            left > UNEXPLAINED && excess(left) > LEFT * excess(worst(&settled.null_readings));
         let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
-        if z > TOO_MUCH || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
+        if z > TOO_MUCH || other || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
             let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
             let names: Vec<String> = names.collect();
             let best = format!("the best that was found, {}", names.join(" and "));
@@ -44,6 +58,10 @@ impl Search<'_> {
                 )
             } else if z > TOO_MUCH {
                 format!("{best}, leaves residuals of {z:.1} standard deviations")
+            } else if other {
+                format!(
+                    "{best}, leaves residuals of {left:.1} standard deviations at a sensor, beyond chance and not much less than there were"
+                )
             } else {
                 format!(
                     "{best}, would be {} effects at once: rather one cause that is not in the catalogue",

@@ -7,12 +7,14 @@ use crate::elpd;
 use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};
 use crate::fit::Fit;
+use crate::profile::profile;
 use crate::trial::Tried;
-use crate::unknown::Unknown;
+use crate::unknown::{Estimate, Unknown};
+use std::collections::HashSet;
 
 impl Search<'_> {
     /// Findings of what was tried, best first; what does badly on samples that were not fitted is refuted and comes last.
-    pub(super) fn ranked(&self, null: &Fit, tried: &mut [Tried]) -> Vec<Finding> {
+    pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>) -> Vec<Finding> {
         let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
         let null_z = self.z(&null.readings);
         let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
@@ -24,6 +26,13 @@ impl Search<'_> {
             let evidence = || b.fit.log_evidence.total_cmp(&a.fit.log_evidence);
             refuted(a).cmp(&refuted(b)).then_with(evidence)
         });
+        // Of one effect at one place (a drift, a jump) the best variant.
+        let of = |t: &Tried| {
+            let candidate = |&k: &usize| (self.all[k].id, self.all[k].component.as_str());
+            t.candidates.iter().map(candidate).collect::<Vec<_>>()
+        };
+        let mut seen = HashSet::new();
+        tried.retain(|t| seen.insert(of(t)));
         let Some(best) = tried.first() else { return Vec::new() };
         // What does not tell effects apart does not make them improbable either.
         let gain = best.fit.log_evidence - null.log_evidence;
@@ -56,11 +65,7 @@ impl Search<'_> {
                     words: candidate.words,
                     parameter: candidate.parameter.0,
                     unit: candidate.parameter.1,
-                    estimate: t.fit.estimate(
-                        &t.unknowns,
-                        place,
-                        elpd::jackknife(&t.fit, &t.unknowns, &blocks, place),
-                    ),
+                    estimate: self.estimate(t, place),
                     profile: None,
                     beside: values_beside(candidate, &t.unknowns, &t.fit.at),
                     probability: if refuted(t) { 0.0 } else { TRIED * weight(t) / total },
@@ -82,6 +87,22 @@ impl Search<'_> {
             t.candidates.iter().zip(&t.places).map(one).collect()
         };
         tried.iter().flat_map(finding).collect()
+    }
+
+    /// A finding with the value and the interval of a fit, by its profile too.
+    pub(super) fn valued(&self, finding: Finding, tried: &Tried, place: usize) -> Finding {
+        let (unknowns, fit) = (&tried.unknowns, &tried.fit);
+        let profile = profile(self.experiment, unknowns, &self.likelihood, fit, place);
+        let estimate = self.estimate(tried, place);
+        let of_it = Finding { estimate, flags: flags(tried, place), ..finding };
+        of_it.with_profile(profile, &unknowns[place])
+    }
+
+    /// A fitted value with its interval, which no block of time may leave.
+    fn estimate(&self, tried: &Tried, place: usize) -> Estimate {
+        let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
+        let least_sd = elpd::jackknife(&tried.fit, &tried.unknowns, &blocks, place);
+        tried.fit.estimate(&tried.unknowns, place, least_sd)
     }
 }
 

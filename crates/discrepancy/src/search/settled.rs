@@ -21,6 +21,8 @@ pub(crate) struct Settled {
     pub(crate) null: (Vec<Unknown>, Vec<f64>),
     /// The unknowns of the last fit, and their values.
     pub(crate) chosen: Option<(Vec<Unknown>, Vec<f64>)>,
+    /// Standard deviations of all samples, as the sensors of the last fit show what might have been.
+    pub(crate) sigma: Vec<f64>,
 }
 
 impl Settled {
@@ -37,6 +39,7 @@ impl Settled {
             additions: Vec::new(),
             null: (Vec::new(), Vec::new()),
             chosen: None,
+            sigma: Vec::new(),
         }
     }
 

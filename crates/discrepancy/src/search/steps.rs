@@ -7,7 +7,8 @@ use crate::error::ExplainError;
 use crate::explain::Verdict;
 use crate::fit::{Care, fit};
 use crate::screen::{Screened, pairs, together};
-use crate::trial::Start;
+use crate::trial::{Start, Tried};
+use crate::unknown::Unknown;
 
 impl Search<'_> {
     /// Takes out what a later effect has made superfluous.
@@ -34,6 +35,30 @@ impl Search<'_> {
                 break;
             }
         }
+        Ok(())
+    }
+
+    /// Values of several effects go together: with their intervals from one fit of all.
+    pub(super) fn joint(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
+        let Some((unknowns, at)) = settled.chosen.clone().filter(|_| self.taken.len() > 1) else {
+            return Ok(());
+        };
+        let readings = self.experiment.readings(&unknowns, &at)?;
+        self.predict(&unknowns, &at);
+        self.likelihood.learn(self.experiment, &readings);
+        self.likelihood.temperature = self.temperature(&settled.null_readings, &readings);
+        let started = unknowns.into_iter().zip(at);
+        let unknowns: Vec<Unknown> = started.map(|(u, start)| Unknown { start, ..u }).collect();
+        let fit = fit(self.experiment, &unknowns, &self.likelihood, &self.slopes, Care::Alone)?;
+        let place = |k: &usize| {
+            unknowns.iter().position(|unknown| unknown.target == self.all[*k].unknown.target)
+        };
+        let places = self.taken.iter().filter_map(place).collect();
+        let tried = Tried { candidates: self.taken.clone(), unknowns, places, fit };
+        for (finding, &place) in settled.effects.iter_mut().zip(&tried.places) {
+            *finding = self.valued(finding.clone(), &tried, place);
+        }
+        settled.chosen = Some((tried.unknowns, tried.fit.at));
         Ok(())
     }
 
@@ -78,6 +103,7 @@ impl Search<'_> {
         rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         rough.truncate(1);
         let Some(best) = rough.first() else { return Ok(()) };
+        self.predict(&best.unknowns, &best.fit.at);
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&first.round.quick, &best.fit.readings);
         let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
