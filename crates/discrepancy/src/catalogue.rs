@@ -115,6 +115,13 @@ impl Candidate {
         self.tolerance.is_some() && self.strain(coordinate) < TOLERATED
     }
 
+    /// Whether a fitted strength is less than what is looked for: below the 95 % range of one that spans decades and has no tolerance.
+    pub fn weak(&self, coordinate: f64) -> bool {
+        let of_strength = self.unknown.logarithmic && !self.parameter.0.ends_with("factor");
+        let least = self.unknown.mean - 1.96 * self.unknown.sd;
+        self.tolerance.is_none() && of_strength && coordinate < least
+    }
+
     /// How far a fitted coordinate lies outside of what is plausible without the effect or, where there is no
     /// tolerance, of the range of the effect; in standard deviations.
     pub fn strain(&self, coordinate: f64) -> f64 {
@@ -160,4 +167,22 @@ pub fn candidates(experiment: &Experiment) -> Vec<Candidate> {
     }
     all.retain(|candidate| !has(experiment, candidate.id, &candidate.component));
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strength_below_its_range_is_weak() {
+        let of = |parameter, range: fn(Target) -> Unknown| {
+            Candidate::effect("T3", "storage", "", (parameter, "m"), range, "")
+        };
+        let depth = of("depth_m", |target| Unknown::between(target, 0.03, 0.4));
+        let weak = |candidate: &Candidate| [0.016_f64, 0.031].map(|x| candidate.weak(x.ln()));
+        assert_eq!(weak(&depth), [true, false]);
+        // A tolerance has its own measure, and a factor is neutral at 1.
+        assert_eq!(weak(&depth.tolerated(0.1_f64.ln(), 0.1)), [false, false]);
+        assert_eq!(weak(&of("factor", |target| Unknown::between(target, 0.03, 0.4))), [false; 2]);
+    }
 }

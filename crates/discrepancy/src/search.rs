@@ -529,7 +529,7 @@ mod tests {
         };
         assert_eq!(of(&experiment).verdict, Verdict::Named);
         for sample in experiment.samples.iter_mut().filter(|s| s.sensor == 3) {
-            let on = (sample.time_s / 300.0) as usize % 2 == 0;
+            let on = ((sample.time_s / 300.0) as usize).is_multiple_of(2);
             sample.value += if on { 1.5 } else { -1.5 };
         }
         let settled = of(&experiment);
