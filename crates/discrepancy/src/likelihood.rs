@@ -41,12 +41,11 @@ impl Likelihood {
 
     /// Root mean square of the residuals over sigma of some samples, with what lies far off alone counted less ([`squares`]).
     pub fn rms(&self, experiment: &Experiment, readings: &[f64], samples: &[usize]) -> f64 {
-        let group = |i: usize| (experiment.samples[i].run, experiment.samples[i].sensor);
         let z = |&i: &usize| (experiment.samples[i].value - readings[i]) / self.sigma[i];
         let of_group = |own: &[usize]| -> f64 {
             squares(&own.iter().map(z).collect::<Vec<f64>>()).iter().sum()
         };
-        let groups = samples.chunk_by(|&i, &j| group(i) == group(j));
+        let groups = samples.chunk_by(|&i, &j| beside(experiment, i, j));
         (groups.map(of_group).sum::<f64>() / samples.len().max(1) as f64).sqrt()
     }
 
@@ -97,9 +96,8 @@ impl Likelihood {
     /// missed by a second would draw the wrong effect to it.
     pub fn temper(&mut self, experiment: &Experiment, readings: &[f64]) {
         let z = self.z(experiment, readings);
-        let group = |i: usize| (experiment.samples[i].run, experiment.samples[i].sensor);
         let all: Vec<usize> = (0..z.len()).collect();
-        for own in all.chunk_by(|&i, &j| group(i) == group(j)) {
+        for own in all.chunk_by(|&i, &j| beside(experiment, i, j)) {
             let counted = squares(&z[own[0]..=own[own.len() - 1]]);
             for (&i, counted) in own.iter().zip(counted) {
                 self.sigma[i] *= (z[i].abs() / counted.sqrt().max(1e-300)).max(1.0);
@@ -132,6 +130,12 @@ impl Likelihood {
         self.noises.clear();
         self.temperature = 1.0;
     }
+}
+
+/// Whether two samples are of one sensor in one run.
+fn beside(experiment: &Experiment, i: usize, j: usize) -> bool {
+    let of = |k: usize| (experiment.samples[k].run, experiment.samples[k].sensor);
+    of(i) == of(j)
 }
 
 #[cfg(test)]

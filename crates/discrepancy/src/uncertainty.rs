@@ -380,7 +380,7 @@ mod tests {
         let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap());
         let slow = [Unknown::plain(Target::Lag(2), 0.0, 1.0)];
         let [fast, slow] = [0.0, 40.0].map(|lag_s| spread.seen(&experiment, &slow, &[lag_s]).sigma);
-        // The front passes the middle about a minute after 1800 s; at 1990 s it is over, but not for a sensor of 40 s.
+        // The front passes the middle until some 2 min after 1800 s; at 2060 s it is over, but not for a sensor of 40 s.
         let at = |time_s: f64, sensor: usize| {
             let mut samples = experiment.samples.iter();
             samples.position(|s| s.sensor == sensor && s.time_s == time_s).unwrap()

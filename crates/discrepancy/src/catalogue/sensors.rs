@@ -19,8 +19,7 @@ const FIRST_K: f64 = 0.3;
 const LAG_S: f64 = 1.5;
 /// The time constant that is known is right to this share at most.
 const LAG: f64 = 0.2;
-/// Time constant beyond the one that is known, standard deviation, s. What follows an input at once (a pressure loss, a power)
-/// follows its noise in the model as well, which a lag would smooth: what happens between two readings has no lag.
+/// Time constant beyond the one that is known, standard deviation, s; at the outlet of a generator with that of its metal and water.
 fn unknown_lag_s(experiment: &Experiment, i: usize) -> f64 {
     let sensor = &experiment.sensors.sensor[i];
     let known_s = LAG * sensor.lag_s / 3.0_f64.sqrt();

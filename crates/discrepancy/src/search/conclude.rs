@@ -29,7 +29,8 @@ impl Search<'_> {
             verdict(&round.findings, settled.class.len(), round.null_z, worst);
     }
 
-    /// Effects that leave far too much are not the cause, nor those that leave much of what a sensor shows; nor do two sensors begin to drift at once where one cause of the plant may,
+    /// Effects that leave far too much are not the cause, nor those that leave much of what a sensor shows; nor do two
+    /// sensors begin to drift at once where one cause of the plant may,
     /// or three effects show for the first time together.
     pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let (unknowns, at) = settled.chosen.as_ref().unwrap_or(&settled.null);
