@@ -5,6 +5,7 @@
 //! component registry and the numerical building blocks.
 
 pub mod clock;
+pub mod cores;
 pub mod effectiveness;
 pub mod error;
 pub mod ids;

@@ -11,11 +11,11 @@
 //!
 //! **Sources** Laplace's method: MacKay 2003, chapter 27 (key `mackay2003`).
 
-use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::{Experiment, Simulated};
 use crate::likelihood::Likelihood;
 use crate::unknown::{Estimate, Target, Unknown};
+use anergy_core::cores::on_all_cores;
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
 

@@ -9,7 +9,6 @@ pub mod beginning;
 #[cfg(test)]
 mod bench;
 pub mod catalogue;
-mod cores;
 pub mod data;
 pub mod elpd;
 pub mod error;

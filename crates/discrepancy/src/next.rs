@@ -15,7 +15,6 @@
 mod menu;
 
 use crate::catalogue::Candidate;
-use crate::cores::on_all_cores;
 use crate::experiment::Experiment;
 use crate::fit::{DIFFERENCE, Slopes};
 use crate::likelihood::Likelihood;
@@ -23,6 +22,7 @@ use crate::noise::{Noise, Residual, whitened};
 use crate::trial::Tried;
 use crate::uncertainty::jitter_s;
 use crate::unknown::{Target, Unknown};
+use anergy_core::cores::on_all_cores;
 use menu::{Menu, menu};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;

@@ -13,11 +13,11 @@
 //! **Sources** Rao 1948 (key `rao1948`).
 
 use crate::catalogue::Candidate;
-use crate::cores::on_all_cores;
 use crate::experiment::Experiment;
 use crate::fit::{Fit, curvature};
 use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
+use anergy_core::cores::on_all_cores;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashSet;
 

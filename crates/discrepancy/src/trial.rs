@@ -1,12 +1,12 @@
 //! Candidates beside what is uncertain anyway: a fit of each, on all cores.
 
 use crate::catalogue::Candidate;
-use crate::cores::on_all_cores;
 use crate::error::ExplainError;
 use crate::experiment::Experiment;
 use crate::fit::{Care, Fit, Slopes, fit};
 use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
+use anergy_core::cores::on_all_cores;
 
 /// Candidates with their fit.
 pub struct Tried {

@@ -13,12 +13,12 @@
 //!
 //! Offsets and gains of sensors are not in sigma: they are the same in all samples, and fitted.
 
-use crate::cores::on_all_cores;
 use crate::data::Track;
 use crate::experiment::{Experiment, Sample, Simulated};
 use crate::grid;
 use crate::sensors::{Role, Sensor};
 use crate::unknown::{Target, Unknown};
+use anergy_core::cores::on_all_cores;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg32;
 

@@ -27,10 +27,22 @@ use crate::error::RunError;
 use crate::model::Model;
 use crate::simulation::Simulation;
 use crate::steady::settle;
+use anergy_core::cores::on_all_cores;
 use blocking::FeederMargin;
 use hunting::Hunting;
 pub use hunting::{LoopMargin, Mode};
 use serde::Serialize;
+
+/// Loops from which on the analysis of a group is worth the start of threads.
+const MANY_LOOPS: usize = 8;
+
+/// What `work` gives for 0, 1, ... `count - 1`, in this order: on all cores where there are many loops.
+fn in_pieces<T: Send>(loops: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    if loops < MANY_LOOPS {
+        return (0..count).map(work).collect();
+    }
+    on_all_cores(count, work)
+}
 
 /// Who blocks whom and which loops will hunt.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]

@@ -15,10 +15,10 @@
 mod balance;
 
 use super::flux::{Flux, missing};
-use crate::cores::on_all_cores;
 use crate::data::{Run, Track};
 use crate::experiment::Experiment;
 use crate::sensors::{Role, Sensor, SensorFile};
+use anergy_core::cores::on_all_cores;
 use anergy_simulation::isolate::{Cut, CutKind};
 use anergy_simulation::model_file::NodeEntryKind;
 use balance::{Measured, Sum};

@@ -1,10 +1,10 @@
 //! Columns that are exchanged: with each other's readings the model fits far better.
 
 use super::misfit::{Column, columns};
-use crate::cores::on_all_cores;
 use crate::data::Run;
 use crate::experiment::Experiment;
 use crate::sensors::Role;
+use anergy_core::cores::on_all_cores;
 
 /// Misfit from which on columns are suspected; by which an exchange must be better, and the share of it that it may leave.
 const SUSPECT: f64 = 1.0;

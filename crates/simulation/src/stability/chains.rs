@@ -2,6 +2,7 @@
 
 use super::chain::{Chain, MOST, Reading, SampledChain};
 use super::elimination::Rows;
+use super::in_pieces;
 use super::lanes::{RowMut, in_vectors};
 use nalgebra::{Complex, DMatrix};
 
@@ -111,12 +112,12 @@ impl Chains {
     pub fn new(actuator_lags_s: &[f64], seen: &[Seen], water_lag_s: f64, interval_s: f64) -> Self {
         let (lags, actuator_of) = kinds(actuator_lags_s);
         let (sensors, sensor_of) = kinds(seen);
-        let pairs = sensors.iter().flat_map(|seen| lags.iter().map(move |lag| (*lag, *seen)));
-        let chain = |(lag_s, seen): (f64, Seen)| {
-            Chain::new(lag_s, water_lag_s, seen.lag_s, seen.dead_s).sampled(interval_s)
+        let behind = |seen: &Seen| -> Vec<SampledChain> {
+            let chain = |lag_s: &f64| Chain::new(*lag_s, water_lag_s, seen.lag_s, seen.dead_s);
+            lags.iter().map(|lag_s| chain(lag_s).sampled(interval_s)).collect()
         };
-        let sampled: Vec<_> =
-            if interval_s > 0.0 { pairs.map(chain).collect() } else { Vec::new() };
+        let count = if interval_s > 0.0 { sensors.len() } else { 0 };
+        let sampled = in_pieces(count, count, |i| behind(&sensors[i])).concat();
         let of_sensor = sampled.chunks(lags.len().max(1));
         let readings = of_sensor.map(|chains| Readings::of(chains, &actuator_of)).collect();
         Self {

@@ -3,6 +3,7 @@
 
 use super::answers::{Answers, Link, answers, is_set_point};
 use super::chains::Seen;
+use super::in_pieces;
 use super::law::Law;
 use super::loops::{Between, Loops};
 use super::modes::Found;
@@ -325,8 +326,8 @@ fn judge(
         }
     };
     let name = |i: usize| plan.controllers[closed[group[i]].controller].name.clone();
-    for root in &found.roots {
-        let (shares, phases) = whole.shape(root.s);
+    let shapes = in_pieces(group.len(), found.roots.len(), |k| whole.shape(found.roots[k].s));
+    for (root, (shares, phases)) in found.roots.iter().zip(shapes) {
         hunting.modes.push(Mode {
             period_s: TAU / root.s.im,
             growth_per_s: root.s.re,
@@ -342,7 +343,11 @@ fn judge(
     }
     let names: Vec<String> = (0..group.len()).map(name).collect();
     let relative = whole.relative_gains();
-    for (i, &k) in group.iter().enumerate() {
+    let limits_alone = in_pieces(group.len(), group.len(), |i| {
+        let alone = Group::new(plan, state, closed, &[group[i]], answers).analyse(plan, state);
+        alone.ok().and_then(|(alone, _)| alone.limit)
+    });
+    for ((i, &k), limit) in group.iter().enumerate().zip(limits_alone) {
         let margin = &mut hunting.controllers[closed[k].controller];
         margin.group.clone_from(&names);
         margin.stable = found.growing == 0;
@@ -353,8 +358,6 @@ fn judge(
             .filter(|limit| limit.omega_rad_s > 0.0)
             .map(|limit| TAU / limit.omega_rad_s);
         margin.relative_gain = relative.as_ref().map(|relative| relative[i]);
-        let alone = Group::new(plan, state, closed, &[k], answers).analyse(plan, state);
-        let limit = alone.ok().and_then(|(alone, _)| alone.limit);
         margin.critical_gain_alone = limit.map(|limit| margin.gain * limit.factor);
     }
 }

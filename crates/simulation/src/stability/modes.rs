@@ -10,6 +10,7 @@
 
 use super::count::{Case, count_growing};
 use super::elimination::{Eliminated, Rows};
+use super::in_pieces;
 use super::limit::{limit_by_counting, limit_of_modes};
 use super::loops::Loops;
 use super::secant::secant;
@@ -23,6 +24,8 @@ const PER_DECADE: usize = 40;
 const PER_DECADE_OF_STARTS: usize = 16;
 /// Modes that are refined where loops differ, and all that grow.
 const REFINED: usize = 8;
+/// Starts that are followed before it is asked whether that is enough.
+const AT_ONCE: usize = 4;
 /// Modes closer than this, relative, are one.
 pub(super) const SAME: f64 = 1e-6;
 /// A mode that moves less than this between growing and decaying has no period.
@@ -66,7 +69,7 @@ pub(super) type Probes = (DVector<C64>, DVector<C64>);
 
 /// A scalar equation `1 + k f(s) = 0`.
 struct Scalar<'a> {
-    f: Box<dyn Fn(C64) -> C64 + 'a>,
+    f: Box<dyn Fn(C64) -> C64 + Send + Sync + 'a>,
     times: usize,
     /// Its values at the frequencies looked at.
     values: Vec<C64>,
@@ -84,9 +87,9 @@ pub(super) fn analyse(loops: &Loops) -> Found {
         scaled.complex_eigenvalues().iter().copied().collect()
     });
     let case = Case { loops, lambdas };
-    let growing = count_growing(&case, 1.0);
     // What grows with hardly any gain has the wrong sign.
-    let wrong = count_growing(&case, NO_GAIN) > 0;
+    let counts = in_pieces(n, 2, |k| count_growing(&case, [1.0, NO_GAIN][k]));
+    let (growing, wrong) = (counts[0], counts[1] > 0);
     let (mut roots, limit) = match &case.lambdas {
         Some(lambdas) => exact(loops, lambdas, growing),
         None => sought(&case, growing, !wrong),
@@ -149,15 +152,22 @@ fn refined(
     growing: i64,
     roots: &mut Vec<Root>,
 ) -> Vec<(C64, Probes)> {
+    let starts = starts(scalars, omegas);
+    let mode = |(limit, scalar): &(Limit, &Scalar)| {
+        let answer = |s| resolvent(loops, s, 1.0, &scalar.probes);
+        follow(scalar, *limit).and_then(|start| secant(answer, start))
+    };
     let mut found = Vec::new();
-    for (k, (limit, scalar)) in starts(scalars, omegas).into_iter().enumerate() {
-        if k >= REFINED && counted(roots) >= growing {
+    for (part, starts) in starts.chunks(AT_ONCE).enumerate() {
+        if part * AT_ONCE >= REFINED && counted(roots) >= growing {
             break;
         }
-        let answer = |s| resolvent(loops, s, 1.0, &scalar.probes);
-        if let Some(s) = follow(scalar, limit).and_then(|start| secant(answer, start)) {
-            keep(roots, s, 1);
-            found.push((s, scalar.probes.clone()));
+        let modes = in_pieces(loops.len(), starts.len(), |i| mode(&starts[i]));
+        for (s, (_, scalar)) in modes.into_iter().zip(starts) {
+            if let Some(s) = s {
+                keep(roots, s, 1);
+                found.push((s, scalar.probes.clone()));
+            }
         }
     }
     found
@@ -232,25 +242,25 @@ fn together<'a>(loops: &'a Loops, omegas: &[f64]) -> Vec<Scalar<'a>> {
     let at = C64::new(0.0, 2.0 / slowest);
     let matrix = loops.matrix(at);
     let eigenvalues = matrix.dense().eigenvalues().unwrap_or_else(|| DVector::zeros(0));
-    let on_grid: Vec<Rows> =
-        omegas.iter().map(|omega| loops.matrix(C64::new(0.0, *omega))).collect();
-    let mut scalars = Vec::new();
-    for lambda in eigenvalues.iter().filter(|lambda| lambda.norm() > 0.0) {
-        let shift = *lambda * C64::new(1.0 + 1e-7, 1e-7);
+    let on_grid = in_pieces(n, omegas.len(), |k| loops.matrix(C64::new(0.0, omegas[k])));
+    let scalar = |lambda: C64| {
+        let shift = lambda * C64::new(1.0 + 1e-7, 1e-7);
         let mut moved = matrix.clone();
         (0..n).for_each(|i| moved.set(i, i, moved.at(i, i) - shift));
         let (left, right) = inverse_iteration(moved);
         let norm = left.dotc(&right);
         if norm.norm() < 1e-12 {
-            continue;
+            return None;
         }
         let through = |matrix: &Rows| matrix.between(&left, &right) / norm;
         let values = on_grid.iter().map(through).collect();
         let probes = (left.clone(), right.clone());
         let f = Box::new(move |s: C64| loops.matrix(s).between(&left, &right) / norm);
-        scalars.push(Scalar { f, times: 1, values, exact: false, probes });
-    }
-    scalars
+        Some(Scalar { f, times: 1, values, exact: false, probes })
+    };
+    let lambdas: Vec<C64> =
+        eigenvalues.iter().copied().filter(|lambda| lambda.norm() > 0.0).collect();
+    in_pieces(n, lambdas.len(), |k| scalar(lambdas[k])).into_iter().flatten().collect()
 }
 
 /// The left and the right vector that a nearly singular matrix answers most.
@@ -363,20 +373,21 @@ pub(super) fn resolvent(loops: &Loops, s: C64, factor: f64, (c, b): &Probes) -> 
 
 /// Roots from many starts.
 fn search(loops: &Loops, omegas: &[f64]) -> Vec<C64> {
-    let mut found = Vec::new();
-    for (i, &omega) in omegas.iter().enumerate().step_by(4) {
+    let from = |k: usize| {
+        let (i, omega) = (4 * k, omegas[4 * k]);
         let probe = probe(loops.len(), u32::try_from(i).unwrap_or(0));
         let probe = (probe.clone(), probe);
-        for growth in [0.3, 0.0] {
+        [0.3, 0.0].map(|growth| {
             let start = C64::new(growth * omega, omega);
-            found.extend(secant(|s| resolvent(loops, s, 1.0, &probe), start));
-        }
-    }
+            secant(|s| resolvent(loops, s, 1.0, &probe), start)
+        })
+    };
+    let found = in_pieces(loops.len(), omegas.len().div_ceil(4), from);
     // Zeros of the probe's answer only are not modes of the loops.
     let mode = |s: &C64| {
         let probe = probe(loops.len(), 987);
         let probe = (probe.clone(), probe);
         s.re > -s.im.abs() && resolvent(loops, *s, 1.0, &probe).norm() < 1e-6
     };
-    found.into_iter().filter(mode).collect()
+    found.into_iter().flatten().flatten().filter(mode).collect()
 }
