@@ -52,6 +52,8 @@ pub struct Candidate {
     /// The tolerance of the quantity, standard deviation of the coordinate, and its middle; none where a neutral
     /// value is far from any plausible one.
     pub tolerance: Option<(f64, f64)>,
+    /// Coordinate beyond which readings rule it out.
+    pub most: f64,
     /// What would tell it from others.
     pub separates: &'static str,
 }
@@ -69,7 +71,8 @@ impl Candidate {
         let unknown = range(effect_target(id, component, parameter.0));
         let component = component.to_owned();
         let (beside, tolerance) = (Vec::new(), None);
-        Self { id, component, words, parameter, unknown, beside, tolerance, separates }
+        let most = f64::INFINITY;
+        Self { id, component, words, parameter, unknown, beside, tolerance, most, separates }
     }
 
     /// The quantity is uncertain by so much (middle and standard deviation of the coordinate) without the effect too.
@@ -116,10 +119,15 @@ impl Candidate {
     }
 
     /// Whether a fitted strength is less than what is looked for: below the 95 % range of one that spans decades and has no tolerance.
-    pub fn weak(&self, coordinate: f64) -> bool {
+    fn weak(&self, coordinate: f64) -> bool {
         let of_strength = self.unknown.logarithmic && !self.parameter.0.ends_with("factor");
         let least = self.unknown.mean - 1.96 * self.unknown.sd;
         self.tolerance.is_none() && of_strength && coordinate < least
+    }
+
+    /// Whether a fitted strength is one that readings rule out, or less than what is looked for.
+    pub fn refuted(&self, coordinate: f64) -> bool {
+        coordinate > self.most || self.weak(coordinate)
     }
 
     /// How far a fitted coordinate lies outside of what is plausible without the effect or, where there is no
@@ -184,5 +192,19 @@ mod tests {
         // A tolerance has its own measure, and a factor is neutral at 1.
         assert_eq!(weak(&depth.tolerated(0.1_f64.ln(), 0.1)), [false, false]);
         assert_eq!(weak(&of("factor", |target| Unknown::between(target, 0.03, 0.4))), [false; 2]);
+    }
+    #[test]
+    fn readings_and_class_bound_the_flaws_of_sensors() {
+        // The flow of the bench is nothing for two minutes, so that its meter does not read too much at no flow.
+        let all = candidates(&crate::bench::experiment(&[]));
+        let of = |id, component: &str| {
+            let mut own = all.iter().filter(|c| c.id == id && c.component == component);
+            own.next().unwrap()
+        };
+        let offset = of("S8", "flow");
+        assert!(offset.refuted(0.005) && !offset.refuted(-0.005));
+        // A drift of 0.3 K may be one of the model, also of a sensor of 0.1 K.
+        let drift = of("S3", "T_house");
+        assert!(drift.within(-0.3) && !drift.within(-0.5));
     }
 }

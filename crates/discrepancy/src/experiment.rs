@@ -54,6 +54,8 @@ pub struct Experiment {
     pub samples: Vec<Sample>,
     /// Smallest and largest value of the signal of every input.
     pub(crate) ranges: Vec<(f64, f64)>,
+    /// Flow meters that never read below zero.
+    pub(crate) one_way: Vec<bool>,
     uses: OnceLock<BTreeMap<String, Use>>,
     pub(crate) step: Time,
 }
@@ -115,6 +117,11 @@ impl Experiment {
             sensor.accuracy(all().sum::<f64>() / count, largest)
         });
         let accuracy = accuracy.collect();
+        let one_way = |(i, sensor): (usize, &Sensor)| {
+            let mut readings = runs.iter().flat_map(|run| &run.tracks[i].value);
+            matches!(sensor.si().as_str(), "kg_s" | "m3_s") && readings.all(|y| *y >= 0.0)
+        };
+        let one_way = sensors.sensor.iter().enumerate().map(one_way).collect();
         let mut samples = Vec::new();
         for (run, measured) in runs.iter().enumerate() {
             for (sensor, track) in measured.tracks.iter().enumerate() {
@@ -136,7 +143,17 @@ impl Experiment {
         };
         let ranges = sensors.sensor.iter().map(range).collect();
         let step = plan.step();
-        Ok(Self { model, sensors, runs, accuracy, samples, ranges, uses: OnceLock::new(), step })
+        Ok(Self {
+            model,
+            sensors,
+            runs,
+            accuracy,
+            samples,
+            ranges,
+            one_way,
+            uses: OnceLock::new(),
+            step,
+        })
     }
 
     /// What the sensors should have read, with values for the unknowns.
@@ -352,6 +369,7 @@ impl Experiment {
 
     fn response(&self, sensor: usize, unknowns: &[Unknown], at: &[f64]) -> Response {
         let mut response = Response::default();
+        response.one_way = self.one_way[sensor];
         let column = &self.sensors.sensor[sensor].column;
         for effect in self.sensors.effect.iter().filter(|effect| effect.component == *column) {
             for (flaw, value) in effect.flaws(sensor) {

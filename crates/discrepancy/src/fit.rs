@@ -238,21 +238,25 @@ pub fn fit(
     if !fresh && since > 0.0 {
         problem.differences(&at, &here, renewed, &mut slopes)?;
     }
-    problem.columns(&slopes, &all, &mut sensitivity);
-    let sensitivity = here.weighted(&sensitivity);
-    let hessian = curvature(&sensitivity, unknowns);
-    let covariance = hessian
-        .clone()
-        .cholesky()
-        .map_or_else(|| DMatrix::identity(n, n), |factor| factor.inverse());
-    // det(S H S)
-    let scaled = DMatrix::from_fn(n, n, |i, j| hessian[(i, j)] * unknowns[i].sd * unknowns[j].sd);
-    let log_det = scaled
-        .cholesky()
-        .map_or(0.0, |factor| 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
-    let log_evidence = -0.5 * here.objective - 0.5 * log_det;
-    let Point { readings, counted: (e, weight), simulated, .. } = here;
-    Ok(Fit { at, readings, e, weight, log_evidence, covariance, sensitivity, slopes, simulated })
+    Ok(problem.ends(at, here, slopes))
+}
+
+/// What a fit of the unknowns begins with, as if it were one: how things look where nothing has been fitted yet.
+///
+/// # Errors
+/// What keeps the model from running.
+pub fn unfitted(
+    experiment: &Experiment,
+    unknowns: &[Unknown],
+    likelihood: &Likelihood,
+) -> Result<Fit, ExplainError> {
+    let problem = Problem { experiment, unknowns, likelihood, care: Care::Alone };
+    let at: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
+    let here = problem.evaluate(&at)?;
+    let mut slopes = Slopes::new();
+    let all: Vec<usize> = (0..unknowns.len()).collect();
+    problem.differences(&at, &here, &all, &mut slopes)?;
+    Ok(problem.ends(at, here, slopes))
 }
 
 impl Problem<'_> {
@@ -294,6 +298,29 @@ impl Problem<'_> {
             at[j] = best;
         }
         here
+    }
+
+    /// The fit that ends here.
+    fn ends(&self, at: Vec<f64>, here: Point, slopes: Slopes) -> Fit {
+        let (unknowns, n) = (self.unknowns, self.unknowns.len());
+        let all: Vec<usize> = (0..n).collect();
+        let mut sensitivity = DMatrix::zeros(self.likelihood.fitted.len(), n);
+        self.columns(&slopes, &all, &mut sensitivity);
+        let sensitivity = here.weighted(&sensitivity);
+        let hessian = curvature(&sensitivity, unknowns);
+        let covariance = hessian
+            .clone()
+            .cholesky()
+            .map_or_else(|| DMatrix::identity(n, n), |factor| factor.inverse());
+        // det(S H S)
+        let scaled =
+            DMatrix::from_fn(n, n, |i, j| hessian[(i, j)] * unknowns[i].sd * unknowns[j].sd);
+        let log_det = scaled
+            .cholesky()
+            .map_or(0.0, |factor| 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
+        let log_evidence = -0.5 * here.objective - 0.5 * log_det;
+        let Point { readings, counted: (e, weight), simulated, .. } = here;
+        Fit { at, readings, e, weight, log_evidence, covariance, sensitivity, slopes, simulated }
     }
 
     fn prior_slope(&self, at: &[f64]) -> DVector<f64> {

@@ -1,7 +1,8 @@
 //! What a sensor makes of its quantity.
 //!
 //! **Equation** `y(t) = g x(t + clock) + b + drift s + step [s > s_step]`, `s` the share of the run that is over, behind a
-//! first-order lag where it has one. The step takes a fiftieth of the run, so that its moment can be fitted.
+//! first-order lag where it has one. A flow meter that shows no flow backward reads `max(y, min(g x, 0))`: an offset is seen at no
+//! flow where it is positive only. The step takes a fiftieth of the run, so that its moment can be fitted.
 
 use crate::data::Track;
 use crate::unknown::Target;
@@ -21,12 +22,14 @@ pub(crate) struct Response {
     drift: f64,
     step: f64,
     step_share: f64,
+    /// Its offset shows no flow backward.
+    pub(crate) one_way: bool,
 }
 
 impl Default for Response {
     fn default() -> Self {
         let (bias, lag_s, clock_s, drift, step, step_share) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.5);
-        Self { bias, gain: 1.0, lag_s, clock_s, drift, step, step_share }
+        Self { bias, gain: 1.0, lag_s, clock_s, drift, step, step_share, one_way: false }
     }
 }
 
@@ -47,11 +50,16 @@ impl Response {
 
     /// Reading of a quantity at a time of a run.
     pub(crate) fn of(&self, quantity: f64, time_s: f64, span_s: (f64, f64)) -> f64 {
-        self.gain * quantity + self.offset(time_s, span_s)
+        let without = self.gain * quantity;
+        let reading = without + self.offset(time_s, span_s);
+        if self.one_way { reading.max(without.min(0.0)) } else { reading }
     }
 
     /// Quantity behind a reading.
     pub(crate) fn before(&self, reading: f64, time_s: f64, span_s: (f64, f64)) -> f64 {
+        if self.one_way && reading <= 0.0 {
+            return reading / self.gain;
+        }
         (reading - self.offset(time_s, span_s)) / self.gain
     }
 
@@ -83,6 +91,23 @@ pub(crate) fn lagged(track: &Track, lag_s: f64) -> Track {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_offset_shows_no_flow_backward() {
+        let of = |bias: f64, quantity: f64| {
+            let response = Response { bias, gain: 1.1, one_way: true, ..Response::default() };
+            response.of(quantity, 0.0, (0.0, 1.0))
+        };
+        // 1.1 0.2 - 0.02; nothing, and what leaks backward, are not moved below zero, but up.
+        assert!((of(-0.02, 0.2) - 0.20).abs() < 1e-12);
+        assert_eq!((of(-0.02, 0.0), of(-0.02, 0.01)), (0.0, 0.0));
+        assert!((of(-0.02, -1e-3) + 1.1e-3).abs() < 1e-12);
+        assert!((of(0.02, 0.0) - 0.02).abs() < 1e-12);
+        // Backward: what reads zero may be nothing, whatever the offset.
+        let response = Response { bias: -0.02, gain: 1.1, one_way: true, ..Response::default() };
+        assert_eq!(response.before(0.0, 0.0, (0.0, 1.0)), 0.0);
+        assert!((response.before(0.2, 0.0, (0.0, 1.0)) - 0.2).abs() < 1e-12);
+    }
 
     #[test]
     fn a_lag_by_hand() {

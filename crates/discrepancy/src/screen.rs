@@ -59,15 +59,16 @@ impl Without<'_> {
         };
         let n = &self.fit.sensitivity;
         let without = |d: &DVector<f64>| d - n * factor.solve(&n.tr_mul(d));
+        let left = self.left(&factor);
         let stuck = (0..self.unknowns.len()).any(|i| self.fit.at_bound(self.unknowns, i));
         let looked = on_all_cores(open.len(), |k| {
             let candidate = &all[open[k]];
-            let mut best = self.along_tolerance(candidate, open[k], &factor);
+            let mut best = self.along_tolerance(candidate, open[k], &factor, &left);
             let simulated = self.experiment.is_simulated(&candidate.unknown.target);
             for start in strengths(candidate, simulated, stuck) {
                 let Some(d) = self.changes(candidate, start) else { continue };
                 let direction = without(&d);
-                let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
+                let (size, along) = (d.dot(&direction), d.dot(&left.1));
                 if size < 1e-12 {
                     continue;
                 }
@@ -97,27 +98,41 @@ impl Without<'_> {
         looked
     }
 
+    /// What the tolerances would still move by, and the whitened residuals after that: where they are fitted, nothing and those
+    /// of the fit.
+    fn left(&self, factor: &Cholesky<f64, Dyn>) -> (DVector<f64>, DVector<f64>) {
+        let (n, fit) = (&self.fit.sensitivity, self.fit);
+        let pull = |(u, x): (&Unknown, &f64)| (x - u.mean) / (u.sd * u.sd);
+        let pull = self.unknowns.iter().zip(&fit.at).map(pull);
+        let pull = DVector::from_iterator(self.unknowns.len(), pull);
+        let moved = factor.solve(&(n.tr_mul(&fit.e) - pull));
+        let e = &fit.e - n * &moved;
+        (moved, e)
+    }
+
     /// A quantity that is a tolerance too, by its sensitivity at the fit: without its narrow prior.
     fn along_tolerance(
         &self,
         candidate: &Candidate,
         place: usize,
         factor: &Cholesky<f64, Dyn>,
+        (moved, e): &(DVector<f64>, DVector<f64>),
     ) -> Option<Screened> {
         let own = &candidate.unknown;
         let j = self.unknowns.iter().position(|u| u.target == own.target)?;
         // Coordinate of the effect, and slope of that of the tolerance by it.
-        let value = self.unknowns[j].value(self.fit.at[j]);
+        let coordinate = self.fit.at[j] + moved[j];
+        let value = self.unknowns[j].value(coordinate);
         let (at, slope) = match (self.unknowns[j].logarithmic, own.logarithmic) {
             (false, true) if value > 0.0 => (value.ln(), value),
-            (one, other) if one == other => (self.fit.at[j], 1.0),
+            (one, other) if one == other => (coordinate, 1.0),
             _ => return None,
         };
         let n = &self.fit.sensitivity;
         let d = n.column(j) * (slope * own.sd);
         let taken = factor.solve(&n.tr_mul(&d));
         let direction = &d - n * &taken;
-        let (size, along) = (d.dot(&direction), d.dot(&self.fit.e));
+        let (size, along) = (d.dot(&direction), d.dot(e));
         // Tolerances that stick to their bounds are no point to start from.
         if size < 1e-12 || (0..self.unknowns.len()).any(|i| self.fit.at_bound(self.unknowns, i)) {
             return None;
@@ -224,7 +239,7 @@ mod tests {
     use super::*;
     use crate::bench;
     use crate::catalogue::{candidates, tolerances};
-    use crate::fit::{Care, Slopes, fit};
+    use crate::fit::{Care, Slopes, fit, unfitted};
     use crate::unknown::Target;
 
     #[test]
@@ -251,6 +266,11 @@ mod tests {
         assert!((slow.gain - gain).abs() < 0.2 * gain, "{} {gain}", slow.gain);
         // Given free, it takes over what the clock stood for.
         assert!((7.0..20.0).contains(&slow.start.exp()), "{}", slow.start.exp());
+        // It is the best one, too, from where nothing is fitted yet; what it gains there is a straight line's guess.
+        let fit = unfitted(experiment, &base, &likelihood).unwrap();
+        let without = Without { experiment, unknowns: &base, likelihood: &likelihood, fit: &fit };
+        let looked = without.screen(&all, &open);
+        assert!(is_slow(&&looked[0]) && looked[0].gain > 0.8 * gain, "{}", looked[0].gain);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::catalogue::Candidate;
 use crate::error::ExplainError;
 use crate::experiment::Experiment;
 use crate::explain::{Finding, Stopwatch, Verdict};
-use crate::fit::{Care, Fit, Slopes, fit};
+use crate::fit::{Care, Fit, Slopes, fit, unfitted};
 use crate::likelihood::Likelihood;
 use crate::next::{Addition, Rivals};
 use crate::screen::{Screened, Without, kept};
@@ -20,6 +20,7 @@ use crate::uncertainty::Spread;
 use crate::unknown::Unknown;
 use nalgebra::DVector;
 pub(crate) use settled::Settled;
+use std::collections::HashSet;
 use wins::{STRAINS, WINS, adds, together};
 
 /// The likelihood is taken to the power of one over this ...
@@ -264,16 +265,17 @@ impl<'a> Search<'a> {
         if could < WINS && strain < STRAINS && null_z < UNEXPLAINED {
             return Ok(None);
         }
-        let start = |s: &Screened| Start {
-            candidates: vec![s.candidate],
-            at: vec![s.start],
-            earlier: None,
-        };
-        let starts: Vec<Start> = kept(&looked, MOST_COMPARED).into_iter().map(start).collect();
+        let starts: Vec<Start> = kept(&looked, MOST_COMPARED).into_iter().map(Start::of).collect();
         // At first every sample counts in full, so that each candidate shows how well it can fit.
         let mut rough = self.common().fits(&starts, Care::Quick);
         watch.lap("fits");
+        if self.taken.is_empty() && strain > STRAINS {
+            rough.extend(self.afresh(&open));
+            watch.lap("fits afresh");
+        }
         rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+        let mut seen = HashSet::new();
+        rough.retain(|tried| seen.insert(tried.candidates.clone()));
         rough.truncate(MOST_COMPARED);
         let (quick, e) = (quick.readings, quick.e);
         let none = Round { quick, e, looked, null_z, tried: Vec::new(), findings: Vec::new() };
@@ -287,7 +289,7 @@ impl<'a> Search<'a> {
         let seen = self.screen(&null, &open);
         let known = |s: &&Screened| again.iter().any(|start| start.candidates == [s.candidate]);
         let new: Vec<Start> =
-            kept(&seen, MOST_COMPARED).into_iter().filter(|s| !known(s)).map(start).collect();
+            kept(&seen, MOST_COMPARED).into_iter().filter(|s| !known(s)).map(Start::of).collect();
         again.extend(new);
         let mut tried = self.common().fits(&again, Care::Quick);
         tried.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
@@ -303,6 +305,20 @@ impl<'a> Search<'a> {
         let null_z = self.z(&null.readings);
         let findings = self.ranked(&null, &mut tried);
         Ok(Some(Round { null_z, tried, findings, ..none }))
+    }
+
+    /// Fits of what looks best where no tolerance is fitted yet: fitted ones may have gone where no effect helps any more, and
+    /// where sensitivities are others.
+    fn afresh(&self, open: &[usize]) -> Vec<Tried> {
+        let new = |u: &Unknown| Unknown { start: u.mean, ..u.clone() };
+        let base: Vec<Unknown> = self.base.iter().map(new).collect();
+        let (experiment, likelihood) = (self.experiment, &self.likelihood);
+        let Ok(fit) = unfitted(experiment, &base, likelihood) else { return Vec::new() };
+        let without = Without { experiment, unknowns: &base, likelihood, fit: &fit };
+        let looked = without.screen(self.all, open);
+        let starts: Vec<Start> = kept(&looked, MOST_COMPARED).into_iter().map(Start::of).collect();
+        let (base, slopes) = (&base[..], &Slopes::new());
+        Common { base, slopes, ..self.common() }.fits(&starts, Care::Quick)
     }
 
     fn screen(&self, fit: &Fit, open: &[usize]) -> Vec<Screened> {

@@ -5,6 +5,7 @@ use crate::error::ExplainError;
 use crate::experiment::Experiment;
 use crate::fit::{Care, Fit, Slopes, fit};
 use crate::likelihood::Likelihood;
+use crate::screen::Screened;
 use crate::unknown::Unknown;
 use anergy_core::cores::on_all_cores;
 
@@ -45,6 +46,12 @@ pub struct Start {
 }
 
 impl Start {
+    /// From where the first look leads.
+    pub fn of(screened: &Screened) -> Self {
+        let Screened { candidate, start, .. } = *screened;
+        Self { candidates: vec![candidate], at: vec![start], earlier: None }
+    }
+
     /// From where an earlier fit ended.
     pub fn again(tried: Tried) -> Self {
         let at = vec![0.0; tried.candidates.len()];

@@ -10,6 +10,8 @@ use crate::unknown::{Target, Unknown};
 
 /// A temperature may drift or jump by so much (95 %), K.
 const DRIFT_K: f64 = 5.0;
+/// A drift or a jump below this is rather one of the model: heat that is off by half a percent warms a storage by as much in hours, K.
+const LEAST_DRIFT_K: f64 = 0.4;
 /// Offset of a flow meter (95 %) and its least tolerance, over its largest reading.
 const ZERO: (f64, f64) = (0.03, 0.001);
 /// What the first readings may say too little of the water at the start, at least, K.
@@ -90,6 +92,16 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     }
 }
 
+/// The largest zero offset that readings allow, SI: a meter that shows no flow backward reads no less than it. Of a compared one
+/// they say themselves what they allow.
+fn largest_offset(experiment: &Experiment, i: usize) -> f64 {
+    if experiment.sensors.sensor[i].role == Role::Compare || !experiment.one_way[i] {
+        return f64::INFINITY;
+    }
+    let readings = experiment.runs.iter().flat_map(|run| &run.tracks[i].value);
+    readings.fold(f64::INFINITY, |least, y| least.min(*y)) + experiment.accuracy[i].noise
+}
+
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let loggers = loggers(experiment);
     for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
@@ -104,6 +116,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 unknown,
                 beside,
                 tolerance,
+                most: if id == "S8" { largest_offset(experiment, i) } else { f64::INFINITY },
                 separates,
             });
         };
@@ -113,7 +126,8 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             _ => None,
         };
         if sensor.si() == "k" {
-            let (known, reference) = (Some((0.0, accuracy.bias)), "a reference beside the sensor");
+            let known = Some((0.0, accuracy.bias.max(0.5 * LEAST_DRIFT_K)));
+            let reference = "a reference beside the sensor";
             let drift = Unknown::plain(Target::Drift(i), 0.0, DRIFT_K / 1.96);
             with(
                 "S3",

@@ -13,19 +13,19 @@ use crate::unknown::{Estimate, Unknown};
 use std::collections::HashSet;
 
 impl Search<'_> {
-    /// Findings of what was tried, best first; what does badly on samples that were not fitted, or would be
-    /// weaker than what is looked for, is refuted and comes last.
+    /// Findings of what was tried, best first; what does badly on samples that were not fitted, would be weaker
+    /// than what is looked for, or is ruled out by readings, is refuted and comes last.
     pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>) -> Vec<Finding> {
         let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
         let null_z = self.z(&null.readings);
         let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
-        let weak = |t: &Tried| {
+        let out = |t: &Tried| {
             let mut own = t.candidates.iter().zip(&t.places);
-            own.any(|(&k, &place)| self.all[k].weak(t.fit.at[place]))
+            own.any(|(&k, &place)| self.all[k].refuted(t.fit.at[place]))
         };
         let refuted = |t: &Tried| {
             let z = self.z(&t.fit.readings);
-            weak(t) || (z > AS_WELL.0 * least.max(1.0) && share(z) - share(least) > AS_WELL.1)
+            out(t) || (z > AS_WELL.0 * least.max(1.0) && share(z) - share(least) > AS_WELL.1)
         };
         tried.sort_by(|a, b| {
             let evidence = || b.fit.log_evidence.total_cmp(&a.fit.log_evidence);

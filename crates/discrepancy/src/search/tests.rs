@@ -155,3 +155,21 @@ fn what_leaves_much_at_a_sensor_is_another_cause() {
     assert_eq!(settled.verdict, Verdict::Unexplained, "{}", settled.because);
     assert!(settled.effects.is_empty() && settled.chosen.is_none());
 }
+
+#[test]
+fn afresh_tolerances_stand_where_they_were_before_any_fit() {
+    let only_far = bench::experiment(&[loss("far", 3.0)]);
+    let all = insulations(&only_far);
+    let might = spread(&only_far);
+    let mut search = search(&only_far, &might, &all);
+    // All the way to their bounds.
+    search.base.iter_mut().for_each(|u| u.start = u.mean + crate::fit::BOUND_SD * u.sd);
+    let found = search.afresh(&[0, 1]);
+    let best =
+        found.iter().max_by(|a, b| a.fit.log_evidence.total_cmp(&b.fit.log_evidence)).unwrap();
+    assert_eq!(best.candidates, [1]);
+    let place = best.places[0];
+    let factor = best.unknowns[place].value(best.fit.at[place]);
+    assert!((factor - 3.0).abs() < 0.2, "{factor}");
+    assert!(best.unknowns.iter().enumerate().all(|(i, _)| !best.fit.at_bound(&best.unknowns, i)));
+}
