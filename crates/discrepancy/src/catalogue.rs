@@ -207,4 +207,18 @@ mod tests {
         let drift = of("S3", "T_house");
         assert!(drift.within(-0.3) && !drift.within(-0.5));
     }
+    #[test]
+    fn a_lag_of_an_input_that_nobody_knows_is_a_tolerance() {
+        let experiment = crate::bench::experiment(&[]);
+        let (inlet, flow) = (0, 1);
+        let all = tolerances(&experiment);
+        let late = |i| all.iter().find(|u| u.target == Target::Clock(i));
+        assert_eq!((late(inlet).unwrap().mean, late(inlet).unwrap().sd), (0.0, 1.5));
+        assert_eq!(late(flow), None);
+        // It is what the plant gets: a front that is read 4 s late enters 4 s before.
+        let late = [Unknown::plain(Target::Clock(inlet), 0.0, 1.5)];
+        let [now, before] = [0.0, 4.0].map(|x| experiment.readings(&late, &[x]).unwrap());
+        let rises = now.iter().zip(&before).map(|(now, before)| (now - before).abs());
+        assert!(rises.fold(0.0, f64::max) > 0.3);
+    }
 }

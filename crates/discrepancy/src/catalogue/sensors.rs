@@ -79,6 +79,9 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         if experiment.sensors.sensor[i].role == Role::Compare {
             all.push(Unknown::plain(Target::Clock(i), 0.0, moment_s(experiment, i)));
             all.push(Unknown::plain(Target::Lag(i), 0.0, unknown_lag_s(experiment, i)));
+        } else if experiment.sensors.sensor[i].si() == "k" {
+            // So small a lag shifts fronts: those of two inputs against each other too.
+            all.push(Unknown::plain(Target::Clock(i), 0.0, LAG_S));
         }
     }
     for logger in loggers(experiment) {
