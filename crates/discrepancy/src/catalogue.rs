@@ -193,6 +193,7 @@ mod tests {
         assert_eq!(weak(&depth.tolerated(0.1_f64.ln(), 0.1)), [false, false]);
         assert_eq!(weak(&of("factor", |target| Unknown::between(target, 0.03, 0.4))), [false; 2]);
     }
+
     #[test]
     fn readings_and_class_bound_the_flaws_of_sensors() {
         // The flow of the bench is nothing for two minutes, so that its meter does not read too much at no flow.
@@ -207,6 +208,7 @@ mod tests {
         let drift = of("S3", "T_house");
         assert!(drift.within(-0.3) && !drift.within(-0.5));
     }
+
     #[test]
     fn a_lag_of_an_input_that_nobody_knows_is_a_tolerance() {
         let experiment = crate::bench::experiment(&[]);
