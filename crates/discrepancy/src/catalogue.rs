@@ -125,9 +125,9 @@ impl Candidate {
         self.tolerance.is_none() && of_strength && coordinate < least
     }
 
-    /// Whether a fitted strength is one that readings rule out, or less than what is looked for.
-    pub fn refuted(&self, coordinate: f64) -> bool {
-        coordinate > self.most || self.weak(coordinate)
+    /// Whether a fitted strength, and the lower end of its interval, is one that readings rule out, or less than what is looked for.
+    pub fn refuted(&self, coordinate: f64, lo: f64) -> bool {
+        lo > self.most || self.weak(coordinate)
     }
 
     /// How far a fitted coordinate lies outside of what is plausible without the effect or, where there is no
@@ -203,7 +203,9 @@ mod tests {
             own.next().unwrap()
         };
         let offset = of("S8", "flow");
-        assert!(offset.refuted(0.005) && !offset.refuted(-0.005));
+        assert!(offset.refuted(0.005, 0.003) && !offset.refuted(-0.005, -0.007));
+        // The largest one that they allow is in the interval.
+        assert!(!offset.refuted(0.005, -0.001));
         // A drift of 0.3 K may be one of the model, also of a sensor of 0.1 K.
         let drift = of("S3", "T_house");
         assert!(drift.within(-0.3) && !drift.within(-0.5));

@@ -21,7 +21,10 @@ impl Search<'_> {
         let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
         let out = |t: &Tried| {
             let mut own = t.candidates.iter().zip(&t.places);
-            own.any(|(&k, &place)| self.all[k].refuted(t.fit.at[place]))
+            own.any(|(&k, &place)| {
+                let at = t.fit.at[place];
+                self.all[k].refuted(at, at - 1.96 * t.fit.covariance[(place, place)].sqrt())
+            })
         };
         let refuted = |t: &Tried| {
             let z = self.z(&t.fit.readings);
