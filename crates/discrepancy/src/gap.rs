@@ -2,6 +2,7 @@
 
 use crate::experiment::Experiment;
 use crate::find::regimes::changing;
+use crate::significance::squares;
 use crate::split::Use;
 use serde::Serialize;
 
@@ -22,7 +23,7 @@ pub struct Gap {
     pub rmse_before: f64,
     /// With the effects.
     pub rmse_after: f64,
-    /// The same over the uncertainty of the samples.
+    /// The same over the uncertainty of the samples, with what lies far off alone counted less ([`squares`]).
     pub z_before: f64,
     /// With the effects.
     pub z_after: f64,
@@ -51,24 +52,27 @@ pub fn gaps(
                 if of.is_empty() {
                     continue;
                 }
-                let rms = |readings: &[f64], over: &dyn Fn(usize) -> f64| {
-                    let square = |&i: &usize| {
-                        ((readings[i] - experiment.samples[i].value) / over(i)).powi(2)
-                    };
-                    (of.iter().map(square).sum::<f64>() / of.len() as f64).sqrt()
+                let mean = |squares: f64| (squares / of.len() as f64).sqrt();
+                let missed = |readings: &[f64], i: usize| readings[i] - experiment.samples[i].value;
+                let rmse = |readings: &[f64]| {
+                    let sum = of.iter().map(|&i| missed(readings, i).powi(2)).sum();
+                    sensor.difference_of_si(mean(sum)).abs()
                 };
-                let reading = |rms: f64| sensor.difference_of_si(rms).abs();
+                let z = |readings: &[f64]| {
+                    let z: Vec<f64> = of.iter().map(|&i| missed(readings, i) / sigma[i]).collect();
+                    mean(squares(&z).iter().sum())
+                };
                 gaps.push(Gap {
                     column: sensor.column.clone(),
                     unit: sensor.unit.clone(),
                     part,
                     regime,
                     samples: of.len(),
-                    rmse_before: reading(rms(before, &|_| 1.0)),
-                    rmse_after: reading(rms(after, &|_| 1.0)),
-                    z_before: rms(before, &|i| sigma[i]),
-                    z_after: rms(after, &|i| sigma[i]),
-                    z_fitted: rms(fitted, &|i| sigma[i]),
+                    rmse_before: rmse(before),
+                    rmse_after: rmse(after),
+                    z_before: z(before),
+                    z_after: z(after),
+                    z_fitted: z(fitted),
                 });
             }
         }

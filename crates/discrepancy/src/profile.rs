@@ -2,14 +2,14 @@
 //! else fitted anew.
 //!
 //! **Equation** `F(x) = min over the others of sum e^2 + sum ((x_j - mean_j)/sd_j)^2`, without the prior of the parameter itself.
-//! The 95 % interval holds the `x` with `F(x) - min F < 3.84` (chi-squared, one degree of freedom). On each side
+//! The likelihood's 95 % interval holds the `x` with `F(x) - min F < 3.84` (chi-squared, one degree of freedom); it is made [`WIDE`]. On each side
 //! `sqrt(F - min F)` is nearly straight: two fits and the line through them give the end. A side on which it does not rise so
 //! far within the bounds of a fit is open: the data alone do not bound it there.
 //!
 //! **Sources** Raue et al. 2009 (key `raue2009`).
 
 use crate::experiment::Experiment;
-use crate::fit::{BOUND_SD, Care, Fit, fit};
+use crate::fit::{BOUND_SD, Care, Fit, WIDE, fit};
 use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
 
@@ -56,9 +56,11 @@ pub fn profile(
     let own_precision = 1.0 / (own.sd * own.sd);
     let precision = 1.0 / at.covariance[(place, place)].max(1e-300) - own_precision;
     let sd = if precision > 1e-6 * own_precision { precision.powf(-0.5) } else { 1e3 * own.sd };
+    let middle = at.at[place];
+    let wide = |end: f64| middle + WIDE * (end - middle);
     Profile {
-        lo: end(&objective, at.at[place], least, -sd, bound(-1.0)),
-        hi: end(&objective, at.at[place], least, sd, bound(1.0)),
+        lo: end(&objective, middle, least, -sd, bound(-1.0)).map(wide),
+        hi: end(&objective, middle, least, sd, bound(1.0)).map(wide),
     }
 }
 

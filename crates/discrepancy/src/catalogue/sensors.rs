@@ -14,6 +14,8 @@ const DRIFT_K: f64 = 5.0;
 const LEAST_DRIFT_K: f64 = 0.4;
 /// Offset of a flow meter (95 %) and its least tolerance, over its largest reading.
 const ZERO: (f64, f64) = (0.03, 0.001);
+/// A meter may drop to zero in this share of its readings, whatever its offset.
+const DROPS: f64 = 0.01;
 /// What the first readings may say too little of the water at the start, at least, K.
 const FIRST_K: f64 = 0.3;
 
@@ -95,14 +97,17 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     }
 }
 
-/// The largest zero offset that readings allow, SI: a meter that shows no flow backward reads no less than it. Of a compared one
-/// they say themselves what they allow.
+/// The largest zero offset that readings allow, SI: a meter that shows no flow backward reads no less than it, but for [`DROPS`]. Of a
+/// compared one they say themselves what they allow.
 fn largest_offset(experiment: &Experiment, i: usize) -> f64 {
     if experiment.sensors.sensor[i].role == Role::Compare || !experiment.one_way[i] {
         return f64::INFINITY;
     }
     let readings = experiment.runs.iter().flat_map(|run| &run.tracks[i].value);
-    readings.fold(f64::INFINITY, |least, y| least.min(*y)) + experiment.accuracy[i].noise
+    let mut readings: Vec<f64> = readings.copied().collect();
+    readings.sort_by(f64::total_cmp);
+    let least = readings.get((DROPS * readings.len() as f64) as usize);
+    least.map_or(f64::INFINITY, |least| least + experiment.accuracy[i].noise)
 }
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {

@@ -212,7 +212,7 @@ fn of_storage(id: &str, known: &Known, layer_m: f64, all: &mut Vec<Candidate>) {
         id,
         "mixing by the jet of an inlet",
         ("share", "1"),
-        |target| Unknown::between(target, 0.02, 1.0),
+        |target| Unknown::between(target, 0.04, 1.0),
         "steps of the flow",
     ));
 }

@@ -1,6 +1,6 @@
 //! The verdict of the first round, and what the last one may make of it.
 
-use super::wins::{EVEN, foretells, surely_foretells, together, wins};
+use super::wins::{NAMED, MOST_OF_IT, foretells, surely_foretells, together, wins};
 use super::{
     BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
     TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
@@ -18,8 +18,8 @@ impl Search<'_> {
             round.tried.iter().map(|t| cosine(&round.tried[0], t) > PARALLEL).collect();
         let class = class(&round.findings, &parallel, round.null_z);
         let probability: f64 = class.iter().map(|f| f.probability).sum();
-        let by_chance = probability <= EVEN && round.null_z.max(worst) < UNEXPLAINED;
-        if by_chance { Vec::new() } else { class }
+        let by_chance = probability <= NAMED && !is_discrepancy(round.null_z, worst);
+        if by_chance { Vec::new() } else { with_others(class, &round.findings) }
     }
 
     /// The verdict of the first round.
@@ -101,9 +101,34 @@ fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
     class
 }
 
+/// A class with the next in probability, until it holds [`MOST_OF_IT`] of what all that was tried has together.
+fn with_others(mut class: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
+    if class.is_empty() {
+        return class;
+    }
+    let probability = |findings: &[Finding]| findings.iter().map(|f| f.probability).sum::<f64>();
+    let is_new =
+        |f: &&Finding| class.iter().all(|c| (c.id, &c.component) != (f.id, &f.component));
+    let mut others: Vec<Finding> = findings.iter().filter(is_new).cloned().collect();
+    others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let all = probability(&class) + probability(&others);
+    for other in others {
+        if probability(&class) < MOST_OF_IT * all {
+            class.push(other);
+        }
+    }
+    class
+}
+
 /// Evidence with what is known beforehand: beyond two standard deviations the tail of a Cauchy distribution, `1/strain^2`.
 fn weight(f: &Finding) -> f64 {
     f.evidence + prior(f.strain)
+}
+
+/// Whether residuals without an effect are those of something that is missing: large at a sensor, or over all where one is beyond chance.
+/// Over all alone they may be those of one moment that was misread, unless they are far too large.
+fn is_discrepancy(null_z: f64, worst: f64) -> bool {
+    null_z > TOO_MUCH || (worst > 0.0 && null_z.max(worst) > UNEXPLAINED)
 }
 
 /// The verdict, and why; `members` is the size of the class, `null_z` the residuals without an effect, `worst` those of the
@@ -113,7 +138,7 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
         return (Verdict::Unexplained, "no effect of the catalogue could be tried".into());
     };
     if members == 0 {
-        return if null_z.max(worst) < UNEXPLAINED {
+        return if !is_discrepancy(null_z, worst) {
             (
                 Verdict::Nothing,
                 match worst > 0.0 {
@@ -158,7 +183,7 @@ fn verdict(findings: &[Finding], members: usize, null_z: f64, worst: f64) -> (Ve
             ),
         )
     } else if members > 1 {
-        (Verdict::Class, format!("{members} effects explain the data about equally well"))
+        (Verdict::Class, format!("these data do not tell {members} effects apart"))
     } else {
         (
             Verdict::Named,
@@ -258,6 +283,21 @@ mod tests {
     }
 
     #[test]
+    fn a_class_holds_nearly_all_of_the_probability() {
+        let of = |id, probability| Finding { probability, ..finding(id, 20.0) };
+        let all = |class: &[Finding], findings: &[Finding]| {
+            ids(&with_others(class.to_vec(), findings)).join(" ")
+        };
+        let findings = [of("A", 0.7), of("B", 0.03), of("C", 0.15), of("D", 0.0)];
+        // 0.7 + 0.15 = 0.85 is 97 % of 0.88.
+        assert_eq!(all(&findings[..1], &findings), "A C");
+        // 0.85 of 0.88 are in it already; and 0.7 of 0.73 where there is no C.
+        assert_eq!(all(&[findings[2].clone(), findings[0].clone()], &findings), "C A");
+        assert_eq!(all(&findings[..1], &findings[..2]), "A");
+        assert_eq!(all(&[], &findings), "");
+    }
+
+    #[test]
     fn every_verdict_has_its_reason() {
         let of = |f: &[Finding], members, null_z, worst| verdict(f, members, null_z, worst).0;
         let good = finding("A", 30.0);
@@ -265,6 +305,9 @@ mod tests {
         assert_eq!(of(&[finding("A", 1.0)], 0, 1.2, 0.0), Verdict::Nothing);
         assert_eq!(of(&[finding("A", 20.0)], 0, 0.7, 0.0), Verdict::Nothing);
         assert_eq!(of(&[finding("A", 1.0)], 0, 1.2, 2.5), Verdict::Unexplained);
+        // Large over all, but at no sensor beyond chance: one moment, unless it is far too large.
+        assert_eq!(of(&[finding("A", 1.0)], 0, 2.9, 0.0), Verdict::Nothing);
+        assert_eq!(of(&[finding("A", 1.0)], 0, 4.5, 0.0), Verdict::Unexplained);
         assert_eq!(of(std::slice::from_ref(&good), 1, 3.0, 3.0), Verdict::Named);
         assert_eq!(of(std::slice::from_ref(&good), 2, 3.0, 3.0), Verdict::Class);
         let far = Finding { beyond: 3.5, ..good.clone() };
