@@ -1,6 +1,6 @@
 //! The verdict of the first round, and what the last one may make of it.
 
-use super::wins::{NAMED, MOST_OF_IT, foretells, surely_foretells, together, wins};
+use super::wins::{BEHIND, MOST_OF_IT, NAMED, foretells, surely_foretells, together, wins};
 use super::{
     BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
     TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
@@ -101,11 +101,12 @@ fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
     class
 }
 
-/// A class with the next in probability, until it holds [`MOST_OF_IT`] of what all that was tried has together.
+/// A class with the next in probability, no further behind the winner than [`BEHIND`], until it holds [`MOST_OF_IT`] of what all that
+/// was tried has together.
 fn with_others(mut class: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
-    if class.is_empty() {
+    let Some(most) = class.iter().map(|f| f.evidence).max_by(f64::total_cmp) else {
         return class;
-    }
+    };
     let probability = |findings: &[Finding]| findings.iter().map(|f| f.probability).sum::<f64>();
     let is_new =
         |f: &&Finding| class.iter().all(|c| (c.id, &c.component) != (f.id, &f.component));
@@ -113,7 +114,7 @@ fn with_others(mut class: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
     others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let all = probability(&class) + probability(&others);
     for other in others {
-        if probability(&class) < MOST_OF_IT * all {
+        if probability(&class) < MOST_OF_IT * all && most - other.evidence < BEHIND {
             class.push(other);
         }
     }
@@ -295,6 +296,9 @@ mod tests {
         assert_eq!(all(&[findings[2].clone(), findings[0].clone()], &findings), "C A");
         assert_eq!(all(&findings[..1], &findings[..2]), "A");
         assert_eq!(all(&[], &findings), "");
+        // However probable where the likelihood is tempered: the data say clearly which.
+        let far = Finding { evidence: 8.0, ..of("F", 0.2) };
+        assert_eq!(all(&findings[..1], &[findings[0].clone(), far]), "A");
     }
 
     #[test]

@@ -25,8 +25,10 @@ pub(super) const TOGETHER: f64 = 3.0;
 /// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
 const NEARLY: f64 = 0.15;
 
-/// Share of the probability of all that was tried that a class holds.
+/// Share of the probability of all that was tried that a class holds ...
 pub(super) const MOST_OF_IT: f64 = 0.95;
+/// ... with what is no further behind its best one, nats.
+pub(super) const BEHIND: f64 = 9.0;
 /// Probability above which an effect, or a class of them, is named: in cases of development without one the best of them had 0.35.
 pub(super) const NAMED: f64 = 0.4;
 
