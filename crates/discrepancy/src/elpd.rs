@@ -59,9 +59,8 @@ pub fn jackknife(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)], i: 
 /// expansion after Cornish and Fisher (Abramowitz and Stegun 1964, 26.7.5, key `abramowitz1964`).
 fn wider(freedom: f64) -> f64 {
     let z: f64 = 1.959_964;
-    let term = |coefficients: [f64; 4]| {
-        coefficients.iter().rev().fold(0.0, |sum, c| sum * z * z + c)
-    };
+    let term =
+        |coefficients: [f64; 4]| coefficients.iter().rev().fold(0.0, |sum, c| sum * z * z + c);
     1.0 + term([1.0, 1.0, 0.0, 0.0]) / (4.0 * freedom)
         + term([3.0, 16.0, 5.0, 0.0]) / (96.0 * freedom.powi(2))
         + term([-15.0, 17.0, 19.0, 3.0]) / (384.0 * freedom.powi(3))
@@ -88,7 +87,8 @@ mod tests {
     #[test]
     fn few_degrees_of_freedom_are_wider() {
         // Tables: 3.1824, 2.5706, 2.2281, 1.9600.
-        for (freedom, quantile) in [(3.0, 3.1824), (5.0, 2.5706), (10.0, 2.2281), (1e9, 1.959_964)] {
+        for (freedom, quantile) in [(3.0, 3.1824), (5.0, 2.5706), (10.0, 2.2281), (1e9, 1.959_964)]
+        {
             let found = 1.959_964 * wider(freedom);
             assert!((found - quantile).abs() < 0.01 * quantile, "{freedom}: {found}");
         }

@@ -203,21 +203,6 @@ pub fn kept(looked: &[Screened], most: usize) -> Vec<&Screened> {
     kept
 }
 
-/// How many effects were looked at as if none showed what others do too: `(sum sqrt(l))^2/sum l` over the eigenvalues `l` of the matrix of
-/// the cosines of their directions; all where they are at right angles, one where they are parallel.
-///
-/// **Source** Galwey 2009 (key `galwey2009`).
-pub fn independent(looked: &[Screened]) -> f64 {
-    let directions: Vec<DVector<f64>> = looked.iter().map(|s| s.direction.normalize()).collect();
-    if directions.is_empty() {
-        return 1.0;
-    }
-    let all = DMatrix::from_columns(&directions);
-    let eigenvalues = all.tr_mul(&all).symmetric_eigenvalues();
-    let roots: f64 = eigenvalues.iter().map(|l| l.max(0.0).sqrt()).sum();
-    roots * roots / looked.len() as f64
-}
-
 /// What effects together gain, by the first look at each, nats.
 pub fn together(looked: &[&Screened], e: &DVector<f64>) -> f64 {
     let n = looked.len();
@@ -286,25 +271,6 @@ mod tests {
         let without = Without { experiment, unknowns: &base, likelihood: &likelihood, fit: &fit };
         let looked = without.screen(&all, &open);
         assert!(is_slow(&&looked[0]) && looked[0].gain > 0.8 * gain, "{}", looked[0].gain);
-    }
-
-    #[test]
-    fn what_shows_the_same_is_one_look() {
-        let of = |all: &[[f64; 3]]| {
-            let looked = |(candidate, d): (usize, &[f64; 3])| Screened {
-                candidate,
-                start: 0.0,
-                gain: 0.0,
-                direction: DVector::from_column_slice(d),
-            };
-            independent(&all.iter().enumerate().map(looked).collect::<Vec<_>>())
-        };
-        let (x, y, z) = ([2.0, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 5.0]);
-        assert!((of(&[x, y, z]) - 3.0).abs() < 1e-9);
-        assert!((of(&[x, [-1.0, 0.0, 0.0], x]) - 1.0).abs() < 1e-6);
-        // Cosine 0.6: eigenvalues 1.6 and 0.4, (1.2649 + 0.6325)^2/2 = 1.8.
-        assert!((of(&[x, [0.6, 0.8, 0.0]]) - 1.8).abs() < 1e-9);
-        assert_eq!(of(&[]), 1.0);
     }
 
     #[test]

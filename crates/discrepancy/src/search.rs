@@ -13,7 +13,7 @@ use crate::explain::{Finding, Stopwatch, Verdict};
 use crate::fit::{Care, Fit, Slopes, fit, unfitted};
 use crate::likelihood::Likelihood;
 use crate::next::{Addition, Rivals};
-use crate::screen::{Screened, Without, independent, kept};
+use crate::screen::{Screened, Without, kept};
 use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::uncertainty::Spread;
@@ -303,7 +303,7 @@ impl<'a> Search<'a> {
         let null = self.null_beside(null, &tried)?;
         watch.lap("fits again");
         let null_z = self.z(&null.readings);
-        let findings = self.ranked(&null, &mut tried, independent(&none.looked));
+        let findings = self.ranked(&null, &mut tried);
         Ok(Some(Round { null_z, tried, findings, ..none }))
     }
 

@@ -1,6 +1,6 @@
 //! The verdict of the first round, and what the last one may make of it.
 
-use super::wins::{BEHIND, MOST_OF_IT, NAMED, foretells, surely_foretells, together, wins};
+use super::wins::{BEHIND, EVEN, MOST_OF_IT, foretells, surely_foretells, together, wins};
 use super::{
     BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
     TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
@@ -18,7 +18,7 @@ impl Search<'_> {
             round.tried.iter().map(|t| cosine(&round.tried[0], t) > PARALLEL).collect();
         let class = class(&round.findings, &parallel, round.null_z);
         let probability: f64 = class.iter().map(|f| f.probability).sum();
-        let by_chance = probability <= NAMED && !is_discrepancy(round.null_z, worst);
+        let by_chance = probability <= EVEN && !is_discrepancy(round.null_z, worst);
         if by_chance { Vec::new() } else { with_others(class, &round.findings) }
     }
 
@@ -108,8 +108,7 @@ fn with_others(mut class: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
         return class;
     };
     let probability = |findings: &[Finding]| findings.iter().map(|f| f.probability).sum::<f64>();
-    let is_new =
-        |f: &&Finding| class.iter().all(|c| (c.id, &c.component) != (f.id, &f.component));
+    let is_new = |f: &&Finding| class.iter().all(|c| (c.id, &c.component) != (f.id, &f.component));
     let mut others: Vec<Finding> = findings.iter().filter(is_new).cloned().collect();
     others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let all = probability(&class) + probability(&others);

@@ -14,8 +14,8 @@ use std::collections::HashSet;
 
 impl Search<'_> {
     /// Findings of what was tried, best first; what does badly on samples that were not fitted, would be weaker
-    /// than what is looked for, or is ruled out by readings, is refuted and comes last. They are the best of so many `looks`.
-    pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>, looks: f64) -> Vec<Finding> {
+    /// than what is looked for, or is ruled out by readings, is refuted and comes last.
+    pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>) -> Vec<Finding> {
         let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
         let null_z = self.z(&null.readings);
         let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
@@ -52,7 +52,7 @@ impl Search<'_> {
         let over = |evidence: f64| ((evidence - best.fit.log_evidence) / loud / WARM).exp();
         let weight = |t: &Tried| over(t.fit.log_evidence) * (prior(strain(t)) / WARM).exp();
         // That nothing is missing counts as much as all that was looked at together: of many something fits best by chance.
-        let nothing = looks * over(null.log_evidence);
+        let nothing = self.all.len() as f64 * over(null.log_evidence);
         let total = tried.iter().filter(|t| !refuted(t)).map(&weight).sum::<f64>() + nothing;
         // Where most of what it gains is that tolerances are strained less, these had stood for it.
         let tolerated_by_null = strained(&self.base, &null.at, &[]);

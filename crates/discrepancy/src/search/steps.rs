@@ -6,7 +6,7 @@ use crate::catalogue::tolerances;
 use crate::error::ExplainError;
 use crate::explain::Verdict;
 use crate::fit::{Care, fit};
-use crate::screen::{Screened, independent, pairs, together};
+use crate::screen::{Screened, pairs, together};
 use crate::trial::{Start, Tried};
 use crate::unknown::Unknown;
 
@@ -109,8 +109,7 @@ impl Search<'_> {
         let again: Vec<Start> = rough.into_iter().map(Start::again).collect();
         let mut tried = self.common().fits(&again, Care::Thorough);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
-        let looks = independent(looked);
-        let findings = self.ranked(&null, &mut tried, looks);
+        let findings = self.ranked(&null, &mut tried);
         let single = if self.taken.is_empty() {
             first.round.tried.iter().take(1).map(|t| (&t.unknowns, &t.fit.slopes)).next()
         } else {
@@ -124,7 +123,7 @@ impl Search<'_> {
         let rival = single.as_ref().unwrap_or(&null);
         // What one effect leaves within what the sensors promise needs no second one that is not very sure; and of all that could be
         // the second one, one fits best by chance.
-        let chance = WARM * looks.ln();
+        let chance = WARM * (self.all.len() as f64).ln();
         let least = if self.z(&rival.readings) < WITHIN { SURE } else { WINS.max(chance) };
         let (Some(pair), [one, other, ..]) = (tried.first(), &findings[..]) else { return Ok(()) };
         let gain = pair.fit.log_evidence - rival.log_evidence;

@@ -40,7 +40,7 @@ fn with_both<'a>(
         let start = Start { candidates: vec![k], at: vec![0.0], earlier: None };
         let mut tried = search.common().fits(&[start], Care::Quick);
         let null = fit(experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
-        let findings = search.ranked(&null.unwrap(), &mut tried, 1.0);
+        let findings = search.ranked(&null.unwrap(), &mut tried);
         search.take(&tried[0], &findings, &mut settled).unwrap();
     }
     (search, settled)
@@ -84,7 +84,7 @@ fn what_leaves_far_more_than_another_is_refuted() {
     let start = |k| Start { candidates: vec![k], at: vec![0.0], earlier: None };
     let mut tried = search.common().fits(&[start(0), start(1)], Care::Quick);
     let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
-    let findings = search.ranked(&null.unwrap(), &mut tried, 1.0);
+    let findings = search.ranked(&null.unwrap(), &mut tried);
     let of = |f: &Finding| (f.component.clone(), f.probability > 0.8);
     // What the near pipe loses more, the sensor in the middle would see.
     assert_eq!(

@@ -29,8 +29,8 @@ const NEARLY: f64 = 0.15;
 pub(super) const MOST_OF_IT: f64 = 0.95;
 /// ... with what is no further behind its best one, nats.
 pub(super) const BEHIND: f64 = 9.0;
-/// Probability above which an effect, or a class of them, is named: in cases of development without one the best of them had 0.35.
-pub(super) const NAMED: f64 = 0.4;
+/// Probability above which an effect, or a class of them, is named.
+pub(super) const EVEN: f64 = 0.5;
 
 /// Whether an effect is more than what tolerances, noise and the flaws of a model would show; `null_z` are the residuals without it.
 pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
