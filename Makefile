@@ -124,12 +124,12 @@ explain-stories: .venv-score/.installed ## What experts found in the laboratory,
 bench: ## Criterion benches
 	cargo bench -p anergy-benches
 
-bench-thermal: ## Times of whole runs with heat: DESTEST 256 days, 1 000 consumers one year, steps of 100 to 10 000
+bench-thermal: ## Times of whole runs with heat: DESTEST 256 days, 1 000 consumers one year, steps of 100 to 10 000, a year of 1 000 valves (over an hour)
 	cargo build --release -p anergy-benches --bin thermal
 	target/release/thermal destest $${ANERGY_REFERENCE_DATA:-../shared/data}/destest/definition
 	target/release/thermal year 1000
-	target/release/thermal valves 1000
 	target/release/thermal steps 100 300 1000 3000 10000
+	target/release/thermal valves 1000
 
 bench-memory: ## Memory of a network of 100 000 edges by phase, of anergy solve, of a state
 	cargo build --release -p anergy -p anergy-benches --bin anergy --bin memory

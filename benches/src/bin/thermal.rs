@@ -2,8 +2,8 @@
 //!
 //! - `thermal destest FOLDER [DAYS]`: the DESTEST network (definition in FOLDER), 256 days at 1 min.
 //! - `thermal year CONSUMERS [DAYS]`: a generated grid at 15 min, loads from profiles, 365 days.
-//! - `thermal valves CONSUMERS [DAYS]`: the same with a thermostatic valve at every consumer, in steps of 15 min and (a week) in
-//!   automatic ones; two days of winter and of summer in other steps against those of 5 s.
+//! - `thermal valves CONSUMERS [DAYS]`: the same with a thermostatic valve at every consumer, in steps of 15 min and in automatic
+//!   ones (a year of 1 000 takes an hour); two days of winter and of summer in other steps against those of 5 s.
 //! - `thermal steps CONSUMERS...`: time per step of such grids, 96 steps after a day.
 //! - `thermal model CONSUMERS FILE [valves]`: the model file of such a grid, its profiles beside it.
 //!
