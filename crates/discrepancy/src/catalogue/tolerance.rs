@@ -30,7 +30,7 @@ pub(super) struct Known {
     pub pump_head: f64,
     /// Conductance of a heat exchanger, relative.
     pub exchanger: f64,
-    /// Heat loss of a storage, relative, with [`LAYERS_LOSS`].
+    /// Heat loss of a storage, relative.
     pub storage_loss: f64,
     /// Conduction along the height of a storage, whose layers are a model of it: logarithm of its factor.
     pub storage_mixing: f64,
@@ -53,6 +53,12 @@ impl Known {
         Self::declared(&experiment.model.tolerance)
     }
 
+    /// Heat loss of a storage of so many layers, relative.
+    pub(super) fn loss_of_layers(&self, layers: Option<f64>) -> f64 {
+        let mixed = layers.is_some_and(|layers| layers < 2.0);
+        if mixed { self.storage_loss } else { self.storage_loss.hypot(LAYERS_LOSS) }
+    }
+
     fn declared(given: &ToleranceEntry) -> Self {
         let plain = |half: Option<f64>, usual: f64| half.map_or(usual, |half| half / ROOT3);
         let factor =
@@ -65,7 +71,7 @@ impl Known {
             film: factor(given.film, 0.1),
             pump_head: factor(given.pump_head, 0.02),
             exchanger: factor(given.exchanger, 0.05),
-            storage_loss: factor(given.storage_loss, 0.08).hypot(LAYERS_LOSS),
+            storage_loss: factor(given.storage_loss, 0.08),
             storage_mixing: factor(given.storage_mixing, 0.7),
             efficiency: factor(given.efficiency, 0.02),
             part_load: factor(given.part_load, 0.01),
@@ -84,7 +90,8 @@ mod tests {
         let given = ToleranceEntry { storage_loss: Some(0.05), ..ToleranceEntry::default() };
         let (known, usual) = (Known::declared(&given), Known::declared(&ToleranceEntry::default()));
         // ln 1.05/root 3 = 0.04879/1.73205 = 0.028169; with 0.06 beside it 0.066284.
-        assert!((known.storage_loss - 0.066_284).abs() < 1e-6);
+        assert!((known.loss_of_layers(Some(1.0)) - 0.028_169).abs() < 1e-6);
+        assert!((known.loss_of_layers(Some(10.0)) - 0.066_284).abs() < 1e-6);
         assert_eq!(Known { storage_loss: usual.storage_loss, ..known }, usual);
         assert!((usual.length - 0.005_773_5).abs() < 1e-7);
     }

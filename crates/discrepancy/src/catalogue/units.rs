@@ -32,7 +32,8 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
             }
         };
         if kind == "storage" && warm {
-            add("T1", "factor", known.storage_loss);
+            let layers = unit.params.to_value()["layers"].as_f64();
+            add("T1", "factor", known.loss_of_layers(layers));
             add("T2", "factor", known.storage_mixing);
         }
         if power && is_generator(kind) {
@@ -90,7 +91,8 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             let written = unit.params.to_value();
             let [height_m, layers] = ["height_m", "layers"].map(|name| written[name].as_f64());
             let layer_m = height_m.zip(layers).map_or(0.0, |(height_m, layers)| height_m / layers);
-            of_storage(id, &known, layer_m, all);
+            let loss = known.loss_of_layers(layers);
+            of_storage(id, &known, loss, layer_m, all);
         }
         if power && is_generator(kind) {
             of_generator(id, &known, all);
@@ -190,10 +192,10 @@ fn factor(
     Candidate::effect(id, component, words, ("factor", "1"), range, separates)
 }
 
-fn of_storage(id: &str, known: &Known, layer_m: f64, all: &mut Vec<Candidate>) {
+fn of_storage(id: &str, known: &Known, uncertain: f64, layer_m: f64, all: &mut Vec<Candidate>) {
     let standby = "a day without flow, and the temperature of the room";
     let loss = factor("T1", id, "heat loss of the storage", (0.5, 4.0), standby);
-    all.push(loss.tolerated(0.0, known.storage_loss));
+    all.push(loss.tolerated(0.0, uncertain));
     let idle = "hours without flow";
     let mixing = factor("T2", id, "conduction along the height of the storage", (0.05, 20.0), idle);
     all.push(mixing.tolerated(0.0, known.storage_mixing));
