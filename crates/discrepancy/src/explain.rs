@@ -47,7 +47,7 @@ pub struct Finding {
     pub unit: &'static str,
     /// Fitted value and 95 % interval.
     pub estimate: Estimate,
-    /// Ends of the 95 % interval by the profile likelihood, as wide as cases say ([`crate::fit::WIDE`]); none where the data alone do not bound it. Only of what was added.
+    /// Ends of the 95 % interval by the profile likelihood, made as wide as cases say; none where the data alone do not bound it. Only of what was added.
     pub profile: Option<[Option<f64>; 2]>,
     /// What else of the effect was fitted: parameter and value.
     pub beside: Vec<(&'static str, f64)>,

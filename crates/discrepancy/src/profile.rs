@@ -2,7 +2,7 @@
 //! else fitted anew.
 //!
 //! **Equation** `F(x) = min over the others of sum e^2 + sum ((x_j - mean_j)/sd_j)^2`, without the prior of the parameter itself.
-//! The likelihood's 95 % interval holds the `x` with `F(x) - min F < 3.84` (chi-squared, one degree of freedom); it is made [`WIDE`]. On each side
+//! The likelihood's 95 % interval holds the `x` with `F(x) - min F < 3.84` (chi-squared, one degree of freedom); it is made as wide as cases say (`WIDE`). On each side
 //! `sqrt(F - min F)` is nearly straight: two fits and the line through them give the end. A side on which it does not rise so
 //! far within the bounds of a fit is open: the data alone do not bound it there.
 //!
