@@ -8,7 +8,8 @@ use anergy_simulation::model_file::ToleranceEntry;
 
 const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// What water in layers seems to lose more or less than a storage: after some charges they are 0.1 to 0.2 K off, which is a tenth to a
-/// third of what is lost in the hours between two of them (without an error of sensor or model in cases of development 10 to 20 %).
+/// third of what is lost in the hours between two of them (without an error of sensor or model in cases of development 10 to 20 %). As
+/// a standard deviation it is chosen between what three nulls take and what a loss of half would still show.
 const LAYERS_LOSS: f64 = 0.06;
 
 /// Standard deviations of what is always uncertain, in the coordinates of their unknowns.
