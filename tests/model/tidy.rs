@@ -20,7 +20,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("import", &["core"]),
     ("ems", &["core", "prosumer", "control"]),
     ("simulation", &["core", "network", "prosumer", "control", "ems"]),
-    ("discrepancy", &["core", "network", "simulation", "recording", "report"]),
+    ("discrepancy", &["core", "network", "prosumer", "simulation", "recording", "report"]),
     ("ensemble", &["core", "simulation", "recording"]),
     ("cli", &EVERYTHING),
     ("py", &EVERYTHING),

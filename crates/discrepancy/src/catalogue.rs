@@ -97,6 +97,11 @@ impl Candidate {
         self.beside.iter().chain([&self.unknown]).any(|own| own.target == unknown.target)
     }
 
+    /// Whether its parameter is fitted as a tolerance.
+    pub(crate) fn is_fitted(&self, tolerances: &[Unknown]) -> bool {
+        tolerances.iter().any(|tolerance| tolerance.target == self.unknown.target)
+    }
+
     /// A coordinate with the strength of the effect times `a`.
     pub(crate) fn scaled(&self, coordinate: f64, a: f64) -> f64 {
         let unknown = &self.unknown;
@@ -116,6 +121,11 @@ impl Candidate {
     /// Whether a fitted coordinate is no more than the tolerance of its quantity.
     pub fn within(&self, coordinate: f64) -> bool {
         self.tolerance.is_some() && self.strain(coordinate) < TOLERATED
+    }
+
+    /// Whether a first guess is clearly within it: a fit, in which other tolerances need not stand for it, may find twice as much.
+    pub(crate) fn well_within(&self, coordinate: f64) -> bool {
+        self.tolerance.is_some() && self.strain(coordinate) < 0.5 * TOLERATED
     }
 
     /// Whether a fitted strength is less than what is looked for: below the 95 % range of one that spans decades and has no tolerance.
@@ -148,6 +158,11 @@ pub(crate) fn sensed(experiment: &Experiment, si: &str) -> bool {
     use crate::sensors::Role;
     let mut compared = experiment.sensors.sensor.iter().filter(|s| s.role == Role::Compare);
     compared.any(|sensor| sensor.si() == si)
+}
+
+/// Length of the longest run, s.
+pub(crate) fn longest_s(experiment: &Experiment) -> f64 {
+    experiment.runs.iter().map(|run| run.span_s.1 - run.span_s.0).fold(0.0, f64::max)
 }
 
 /// Whether the model has the effect already.

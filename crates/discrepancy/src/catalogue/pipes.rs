@@ -2,7 +2,7 @@
 
 use super::seen::Seen;
 use super::tolerance::Known;
-use super::{Candidate, effect_target, has, sensed};
+use super::{Candidate, effect_target, has, longest_s, sensed};
 use crate::experiment::Experiment;
 use crate::unknown::Unknown;
 use anergy_network::elements::ElementParams;
@@ -67,8 +67,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
 
 pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
     let (heat, pressure) = (sensed(experiment, "k"), shows_friction(experiment));
-    let longest_s = experiment.runs.iter().map(|run| run.span_s.1 - run.span_s.0);
-    let longest_s = longest_s.fold(0.0, f64::max);
+    let longest_s = longest_s(experiment);
     let (seen, known) = (Seen::new(experiment), Known::of(experiment));
     for (component, pipe) in pipes(&experiment.model) {
         if heat {

@@ -4,13 +4,16 @@
 //! logarithm of a factor, `ln(1 + h)/root 3`.
 
 use crate::experiment::Experiment;
+use anergy_prosumer::equipment::storage::StorageParams;
 use anergy_simulation::model_file::ToleranceEntry;
 
 const ROOT3: f64 = 1.732_050_807_568_877_2;
-/// What water in layers seems to lose more or less than a storage: after some charges they are 0.1 to 0.2 K off, which is a tenth to a
-/// third of what is lost in the hours between two of them (without an error of sensor or model in cases of development 10 to 20 %). As
-/// a standard deviation it is chosen between what three nulls take and what a loss of half would still show.
-const LAYERS_LOSS: f64 = 0.06;
+/// Water in layers is 0.1 to 0.2 K off after some charges, without an error of sensor or model, in cases of development: as a
+/// standard deviation of what a storage seems to lose in a record.
+const LAYERS_K: f64 = 0.06;
+/// Water of a storage, J/(m3 K), and how much warmer than its surroundings it usually is, K.
+const WATER_J_M3_K: f64 = 4.1e6;
+const WARMER_K: f64 = 30.0;
 
 /// Standard deviations of what is always uncertain, in the coordinates of their unknowns.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,10 +57,13 @@ impl Known {
         Self::declared(&experiment.model.tolerance)
     }
 
-    /// Heat loss of a storage of so many layers, relative.
-    pub(super) fn loss_of_layers(&self, layers: Option<f64>) -> f64 {
-        let mixed = layers.is_some_and(|layers| layers < 2.0);
-        if mixed { self.storage_loss } else { self.storage_loss.hypot(LAYERS_LOSS) }
+    /// Heat loss of a storage, relative: of one in layers with what these are off, over what its water loses in the longest run.
+    pub(super) fn loss_of(&self, storage: &StorageParams, longest_s: f64) -> f64 {
+        if storage.layers < 2 {
+            return self.storage_loss;
+        }
+        let lost_k = storage.loss_w_k() * WARMER_K * longest_s / (WATER_J_M3_K * storage.volume_m3);
+        self.storage_loss.hypot((LAYERS_K / lost_k.max(LAYERS_K)).min(1.0))
     }
 
     fn declared(given: &ToleranceEntry) -> Self {
@@ -90,9 +96,19 @@ mod tests {
     fn what_is_not_declared_is_as_usual() {
         let given = ToleranceEntry { storage_loss: Some(0.05), ..ToleranceEntry::default() };
         let (known, usual) = (Known::declared(&given), Known::declared(&ToleranceEntry::default()));
-        // ln 1.05/root 3 = 0.04879/1.73205 = 0.028169; with 0.06 beside it 0.066284.
-        assert!((known.loss_of_layers(Some(1.0)) - 0.028_169).abs() < 1e-6);
-        assert!((known.loss_of_layers(Some(10.0)) - 0.066_284).abs() < 1e-6);
+        // ln 1.05/root 3 = 0.04879/1.73205 = 0.028169. In 4 h 10 W/K 30 K 14 400 s/(4.1e6 J/(m3 K) 0.6 m3) = 1.7561 K are lost, of
+        // which 0.06 K are 0.034167: together 0.044282. In a day 0.0056945, together 0.028739.
+        let of = |layers, longest_s| {
+            let (volume_m3, height_m, ua_w_k) = (0.6, 1.8, Some(10.0));
+            let storage =
+                StorageParams { volume_m3, height_m, ua_w_k, layers, ..StorageParams::default() };
+            known.loss_of(&storage, longest_s)
+        };
+        for (layers, longest_s, expected) in
+            [(1, 14_400.0, 0.028_169), (10, 14_400.0, 0.044_282), (10, 86_400.0, 0.028_739)]
+        {
+            assert!((of(layers, longest_s) - expected).abs() < 1e-6, "{}", of(layers, longest_s));
+        }
         assert_eq!(Known { storage_loss: usual.storage_loss, ..known }, usual);
         assert!((usual.length - 0.005_773_5).abs() < 1e-7);
     }

@@ -1,10 +1,11 @@
 //! Effects of houses: storages, generators, circuits that meet.
 
 use super::tolerance::Known;
-use super::{Candidate, effect_target, has, sensed};
+use super::{Candidate, effect_target, has, longest_s, sensed};
 use crate::experiment::Experiment;
 use crate::sensors::Sensor;
 use crate::unknown::{Target, Unknown};
+use anergy_prosumer::equipment::EquipmentParams;
 use serde_json::Value;
 
 /// What the efficiency at part load may be off without an effect over what each load of it may be.
@@ -32,8 +33,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
             }
         };
         if kind == "storage" && warm {
-            let layers = unit.params.to_value()["layers"].as_f64();
-            add("T1", "factor", known.loss_of_layers(layers));
+            add("T1", "factor", loss_of(experiment, &known, &unit.params));
             add("T2", "factor", known.storage_mixing);
         }
         if power && is_generator(kind) {
@@ -45,6 +45,14 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
                 add("G2", field, known.part_load);
             }
         }
+    }
+}
+
+/// Heat loss of a storage, relative.
+fn loss_of(experiment: &Experiment, known: &Known, params: &EquipmentParams) -> f64 {
+    match params {
+        EquipmentParams::Storage(storage) => known.loss_of(storage, longest_s(experiment)),
+        _ => known.storage_loss,
     }
 }
 
@@ -91,7 +99,7 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             let written = unit.params.to_value();
             let [height_m, layers] = ["height_m", "layers"].map(|name| written[name].as_f64());
             let layer_m = height_m.zip(layers).map_or(0.0, |(height_m, layers)| height_m / layers);
-            let loss = known.loss_of_layers(layers);
+            let loss = loss_of(experiment, &known, &unit.params);
             of_storage(id, &known, loss, layer_m, all);
         }
         if power && is_generator(kind) {

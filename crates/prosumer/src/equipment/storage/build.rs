@@ -11,6 +11,7 @@ use super::{StorageCoil, StorageParams, StorageRod};
 use crate::equipment::liquid;
 use crate::thermal_unit::UnitError;
 use anergy_core::medium::Medium;
+use std::f64::consts::PI;
 
 /// Loss of a storage of which nothing is said, W/(m2 K).
 pub const U_W_M2_K: f64 = 0.35;
@@ -146,6 +147,14 @@ impl StorageParams {
             return within("jet_share", problem);
         }
         Ok((self.jet_share > 0.0).then_some(jet))
+    }
+
+    /// Conductance to the surroundings, of envelope and bridges together, W/K.
+    pub fn loss_w_k(&self) -> f64 {
+        let area_m2 = self.volume_m3 / self.height_m;
+        let side_m2 = (4.0 * PI * area_m2).sqrt() * self.height_m;
+        let of_envelope = self.u_w_m2_k.unwrap_or(U_W_M2_K) * (side_m2 + 2.0 * area_m2);
+        self.ua_w_k.unwrap_or(of_envelope) + self.bridges_w_k.iter().sum::<f64>()
     }
 
     /// Conductance of each layer to the surroundings, W/K.

@@ -461,3 +461,21 @@ fn no_step_sends_more_through_the_tank_than_it_holds() {
     assert!((longest_s(-1.0 / 3.0) - 2355.0).abs() < 1e-6);
     assert_eq!((longest_s(0.0), longest_s(100.0)), (f64::INFINITY, 60.0));
 }
+
+#[test]
+fn its_loss_is_that_of_all_layers() {
+    // 10 m3, 4 m high: cross-section 2.5 m2, side sqrt(4 pi 2.5) 4 = 22.4200 m2, with both ends 27.4200 m2; 0.35 of each 9.5970 W/K.
+    let params = StorageParams { volume_m3: 10.0, height_m: 4.0, ..StorageParams::default() };
+    assert!((params.loss_w_k() - 9.5970).abs() < 1e-4);
+    let given = StorageParams { ua_w_k: Some(12.0), bridges_w_k: vec![0.5; 10], ..params.clone() };
+    assert_eq!(given.loss_w_k(), 17.0);
+    // From 20 K above what is around.
+    for params in [params, given] {
+        let params = StorageParams { initial_k: Some(params.ambient_k + 20.0), ..params };
+        let mut run = Run::new(&params);
+        let before_j = run.unit.stored_j(&run.state);
+        run.step(1.0, &[(0.0, params.ambient_k)]);
+        let lost_w = before_j - run.unit.stored_j(&run.state);
+        assert!((lost_w / (20.0 * params.loss_w_k()) - 1.0).abs() < 1e-3, "{lost_w}");
+    }
+}
