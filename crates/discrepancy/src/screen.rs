@@ -82,11 +82,10 @@ impl Without<'_> {
             best
         });
         let mut looked: Vec<Screened> = looked.into_iter().flatten().collect();
-        // What lies within a tolerance that is not fitted (a drift within the class of its sensor) is no effect.
+        // What lies well within a tolerance that is not fitted (a drift within the class of its sensor) is no effect.
         looked.retain(|screened| {
             let candidate = &all[screened.candidate];
-            let fitted = self.unknowns.iter().any(|u| u.target == candidate.unknown.target);
-            fitted || !candidate.within(screened.start)
+            candidate.is_fitted(self.unknowns) || !candidate.well_within(screened.start)
         });
         looked.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Of one parameter at one place the best variant.

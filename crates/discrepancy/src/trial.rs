@@ -60,13 +60,23 @@ impl Start {
 }
 
 impl Common<'_> {
-    /// Fits beside what is there. A candidate with which the model does not run, nor with half and a quarter of it, is none.
+    /// Fits beside what is there. A candidate with which the model does not run, nor with half and a quarter of it, is none, nor
+    /// one that lies within a tolerance that is not fitted (a drift within the class of its sensor).
     pub fn fits(&self, starts: &[Start], care: Care) -> Vec<Tried> {
         let weaker = |k: usize| {
             let mut shares = [1.0, 0.5, 0.25].into_iter();
             shares.find_map(|share| self.fit_one(&starts[k], share, care).ok())
         };
-        on_all_cores(starts.len(), weaker).into_iter().flatten().collect()
+        let none = |tried: &Tried| {
+            let mut own = tried.candidates.iter().zip(&tried.places);
+            own.any(|(&k, &place)| {
+                self.all[k].within(tried.fit.at[place]) && !self.all[k].is_fitted(self.base)
+            })
+        };
+        let mut tried: Vec<Tried> =
+            on_all_cores(starts.len(), weaker).into_iter().flatten().collect();
+        tried.retain(|tried| !none(tried));
+        tried
     }
 
     /// The fit from this share of the strength.
@@ -119,9 +129,11 @@ mod tests {
     #[test]
     fn what_does_not_run_is_tried_weaker_or_is_worthless() {
         let experiment = bench::experiment(&[]);
-        let all = candidates(&experiment);
+        let mut all = candidates(&experiment);
         let is_length = |c: &Candidate| (c.id, c.component.as_str()) == ("P10", "far");
         let k = all.iter().position(is_length).unwrap();
+        // However near to what the plan says it ends.
+        all[k].tolerance = None;
         let n = experiment.samples.len();
         let likelihood = Likelihood::new(vec![0.1; n], (0..n).collect());
         let (base, slopes) = (Vec::new(), Slopes::new());
@@ -137,5 +149,27 @@ mod tests {
         let tried = common.fits(&[from(-0.1), from(-10.0)], Care::Quick);
         assert_eq!(tried.len(), 1);
         assert!((tried[0].fit.at[0] - 1.0).abs() < 0.2, "{:?}", tried[0].fit.at);
+    }
+
+    #[test]
+    fn a_drift_within_what_its_class_permits_is_none() {
+        use crate::unknown::Target;
+        let house = 3;
+        // (0.15 + 0.002 * 50) K are permitted, but below 0.4 K none is told.
+        for (drift_k, count) in [(0.3, 0), (0.5, 1)] {
+            let drift = Unknown::plain(Target::Drift(house), 0.0, 1.0);
+            let experiment = bench::experiment(&[(drift, drift_k)]);
+            let all = candidates(&experiment);
+            let is_drift = |c: &Candidate| c.unknown.target == Target::Drift(house);
+            let k = all.iter().position(is_drift).unwrap();
+            let n = experiment.samples.len();
+            let likelihood = Likelihood::new(vec![0.02; n], (0..n).collect());
+            let (base, slopes) = (Vec::new(), Slopes::new());
+            let (experiment, base, likelihood) = (&experiment, &base, &likelihood);
+            let common = Common { experiment, base, all: &all, likelihood, slopes: &slopes };
+            // A first guess may be less than what a fit finds.
+            let start = Start { candidates: vec![k], at: vec![0.25], earlier: None };
+            assert_eq!(common.fits(&[start], Care::Quick).len(), count);
+        }
     }
 }

@@ -134,7 +134,9 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
             _ => None,
         };
         if sensor.si() == "k" {
-            let known = Some((0.0, accuracy.bias.max(0.5 * LEAST_DRIFT_K)));
+            // Two of these are what its class permits (root of 3 times the standard deviation of its offset).
+            let permitted_k = 3.0_f64.sqrt() * accuracy.bias;
+            let known = Some((0.0, 0.5 * permitted_k.max(LEAST_DRIFT_K)));
             let reference = "a reference beside the sensor";
             let drift = Unknown::plain(Target::Drift(i), 0.0, DRIFT_K / 1.96);
             with(
@@ -146,12 +148,10 @@ pub(super) fn candidates(experiment: &Experiment, all: &mut Vec<Candidate>) {
                 known,
                 reference,
             );
-            // A jump may be anywhere: three beginnings. Each is a simulation where the sensor drives the model.
-            let beginnings: &[f64] =
-                if sensor.role == Role::Compare { &[0.25, 0.5, 0.75] } else { &[] };
-            for share in beginnings {
+            // A jump may be anywhere: three beginnings.
+            for share in [0.25, 0.5, 0.75] {
                 let jump = Unknown::plain(Target::Step(i), 0.0, DRIFT_K / 1.96);
-                let moment = Unknown::plain(Target::StepShare(i), 0.5, 0.3).starting_at(*share);
+                let moment = Unknown::plain(Target::StepShare(i), 0.5, 0.3).starting_at(share);
                 let words = "jump of the sensor";
                 with("S3", words, ("step_k", "K"), jump, vec![moment], known, reference);
             }

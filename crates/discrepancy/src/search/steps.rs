@@ -11,28 +11,33 @@ use crate::trial::{Start, Tried};
 use crate::unknown::Unknown;
 
 impl Search<'_> {
-    /// Takes out what a later effect has made superfluous.
+    /// Takes out what a later effect has made superfluous, and what that had stood for.
     pub(super) fn step_back(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         if self.taken.len() < 2 {
             return Ok(());
         }
-        let with = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
-        for k in (0..self.taken.len() - 1).rev() {
+        let mut with =
+            fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
+        // The last one stays.
+        let mut k = self.taken.len() - 1;
+        while k > 0 {
+            k -= 1;
             let candidate = &self.all[self.taken[k]];
             let mut base = self.base.clone();
             base.retain(|unknown| !candidate.owns(unknown));
             // What it is made of is uncertain again as it was before.
             base.extend(tolerances(self.experiment).into_iter().filter(|u| candidate.owns(u)));
-            let without = fit(self.experiment, &base, &self.likelihood, &self.slopes, Care::Quick)?;
+            let without =
+                fit(self.experiment, &base, &self.likelihood, &self.slopes, Care::Thorough)?;
             // What the others leave within what the sensors promise needs no further one that is not very sure.
             let least = if self.z(&without.readings) < WITHIN { SURE } else { KEEPS };
             if with.log_evidence - without.log_evidence < least {
                 self.base = base;
                 self.taken.remove(k);
                 settled.effects.remove(k);
-                let at = without.at.clone();
-                settled.chosen = Some((self.base.clone(), at));
-                break;
+                settled.chosen = Some((self.base.clone(), without.at.clone()));
+                with = without;
+                k = self.taken.len() - 1;
             }
         }
         Ok(())

@@ -118,22 +118,24 @@ fn a_pair_is_taken_where_it_explains_more_than_one() {
 
 #[test]
 fn a_jump_is_found_where_it_was_and_is_no_drift() {
-    let house = 3;
-    let jump = (Unknown::plain(Target::Step(house), 0.0, 2.5), -1.6);
-    let moment = (Unknown::plain(Target::StepShare(house), 0.5, 0.3), 0.42);
-    let experiment = bench::experiment(&[jump, moment]);
-    let mut all = candidates(&experiment);
-    all.retain(|c| c.id == "S3" && c.component == "T_house");
-    let might = spread(&experiment);
-    let mut search = search(&experiment, &might, &all);
-    let settled = search.run(&mut Stopwatch::new()).unwrap();
-    let [found] = &settled.effects[..] else { panic!("{:?}", settled.effects) };
-    assert_eq!((found.id, found.parameter), ("S3", "step_k"));
-    assert!((found.estimate.value + 1.6).abs() < 0.05, "{:?}", found.estimate);
-    let share = found.beside[0].1;
-    assert!((share - 0.42).abs() < 0.02, "{share}");
-    // The drift was tried too; of one effect at one place the best counts.
-    assert_eq!(settled.tried.len(), 1);
+    // Of a sensor that is compared, and of one that drives the model.
+    for (sensor, column) in [(3, "T_house"), (0, "T_in")] {
+        let jump = (Unknown::plain(Target::Step(sensor), 0.0, 2.5), -1.6);
+        let moment = (Unknown::plain(Target::StepShare(sensor), 0.5, 0.3), 0.42);
+        let experiment = bench::experiment(&[jump, moment]);
+        let mut all = candidates(&experiment);
+        all.retain(|c| c.id == "S3" && c.component == column);
+        let might = spread(&experiment);
+        let mut search = search(&experiment, &might, &all);
+        let settled = search.run(&mut Stopwatch::new()).unwrap();
+        let [found] = &settled.effects[..] else { panic!("{column}: {:?}", settled.effects) };
+        assert_eq!((found.id, found.parameter), ("S3", "step_k"));
+        assert!((found.estimate.value + 1.6).abs() < 0.05, "{:?}", found.estimate);
+        let share = found.beside[0].1;
+        assert!((share - 0.42).abs() < 0.02, "{column}: {share}");
+        // The drift was tried too; of one effect at one place the best counts.
+        assert_eq!(settled.tried.len(), 1);
+    }
 }
 
 #[test]
