@@ -91,6 +91,7 @@ mod tests {
             takes_along: 0.0,
             tolerated: false,
             within: false,
+            is_open: false,
             validation_z: 1.0,
             reduction: 0.9,
             separates: "",

@@ -102,6 +102,19 @@ impl Candidate {
         tolerances.iter().any(|tolerance| tolerance.target == self.unknown.target)
     }
 
+    /// The value at which it is none, where it has one, and nothing else of it makes it one.
+    pub(crate) fn neutral(&self) -> Option<f64> {
+        let with_others = |beside: &Unknown| matches!(beside.target, Target::Effect { .. });
+        let unknown = &self.unknown;
+        let coordinate = match (self.tolerance, unknown.logarithmic) {
+            _ if self.beside.iter().any(with_others) => None,
+            (Some((middle, _)), _) => Some(middle),
+            (None, false) => Some(unknown.mean),
+            (None, true) => self.parameter.0.ends_with("factor").then_some(0.0),
+        };
+        coordinate.map(|at| unknown.value(at))
+    }
+
     /// A coordinate with the strength of the effect times `a`.
     pub(crate) fn scaled(&self, coordinate: f64, a: f64) -> f64 {
         let unknown = &self.unknown;
@@ -207,6 +220,18 @@ mod tests {
         // A tolerance has its own measure, and a factor is neutral at 1.
         assert_eq!(weak(&depth.tolerated(0.1_f64.ln(), 0.1)), [false, false]);
         assert_eq!(weak(&of("factor", |target| Unknown::between(target, 0.03, 0.4))), [false; 2]);
+    }
+
+    #[test]
+    fn every_effect_that_can_be_none_says_where() {
+        let of = |id| {
+            let mut all = candidates(&crate::bench::experiment(&[])).into_iter();
+            all.find(|c| c.id == id).unwrap().neutral()
+        };
+        // A wall, a lag and dispersion are strengths that span decades.
+        assert_eq!(["P1", "P7"].map(of), [None; 2]);
+        assert_eq!(["P2", "P10", "S2"].map(of), [Some(1.0); 3]);
+        assert_eq!(["P3", "P6", "S1", "S3", "S7", "S8"].map(of), [Some(0.0); 6]);
     }
 
     #[test]

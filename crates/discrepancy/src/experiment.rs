@@ -6,7 +6,7 @@
 use crate::catalogue::Use;
 use crate::data::{Run, Track};
 use crate::error::ExplainError;
-use crate::inputs::Input;
+use crate::inputs::{Input, off_is_off};
 use crate::response::{Response, lagged};
 use crate::sensors::{Accuracy, Role, Sensor, SensorFile};
 use crate::unknown::{Target, Unknown};
@@ -65,7 +65,11 @@ impl Experiment {
     ///
     /// # Errors
     /// A signal or channel that the model does not have, a unit that does not fit, a model that does not build.
-    pub fn new(model: Model, sensors: SensorFile, runs: Vec<Run>) -> Result<Self, ExplainError> {
+    pub fn new(
+        model: Model,
+        sensors: SensorFile,
+        mut runs: Vec<Run>,
+    ) -> Result<Self, ExplainError> {
         let plan = build(&model).map_err(ExplainError::Model)?;
         let shortest_s = runs.iter().map(|r| r.span_s.1 - r.span_s.0).fold(f64::INFINITY, f64::min);
         for sensor in &sensors.sensor {
@@ -116,7 +120,7 @@ impl Experiment {
             let largest = all().fold(0.0_f64, |largest, y| largest.max(y.abs()));
             sensor.accuracy(all().sum::<f64>() / count, largest)
         });
-        let accuracy = accuracy.collect();
+        let accuracy: Vec<Accuracy> = accuracy.collect();
         let one_way = |(i, sensor): (usize, &Sensor)| {
             let mut readings = runs.iter().flat_map(|run| &run.tracks[i].value);
             matches!(sensor.si().as_str(), "kg_s" | "m3_s") && readings.all(|y| *y >= 0.0)
@@ -141,7 +145,8 @@ impl Experiment {
             let spec = signal.map(|signal| plan.signals().spec(signal));
             spec.map_or((f64::NEG_INFINITY, f64::INFINITY), |spec| (spec.min, spec.max))
         };
-        let ranges = sensors.sensor.iter().map(range).collect();
+        let ranges: Vec<(f64, f64)> = sensors.sensor.iter().map(range).collect();
+        runs.iter_mut().for_each(|run| off_is_off(run, &sensors, &ranges, &accuracy));
         let step = plan.step();
         Ok(Self {
             model,

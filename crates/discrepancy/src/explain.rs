@@ -70,6 +70,8 @@ pub struct Finding {
     pub tolerated: bool,
     /// Whether it is no more than the tolerance of its quantity: a sensor that drifts within its class.
     pub within: bool,
+    /// Whether its interval, which no block of time may leave, holds the value at which it is none.
+    pub is_open: bool,
     /// Root mean square of all residuals on the validation samples over their uncertainty.
     pub validation_z: f64,
     /// The largest reduction of the error of a sensor on the validation samples, relative.

@@ -10,9 +10,9 @@
 //! readings, as early as late. So is a flow that only runs forward, unless one of the readings was taken on its way: as much flows as
 //! with a straight line, and a pause is neither too short nor too long.
 
-use crate::data::Track;
+use crate::data::{Run, Track};
 use crate::response::Response;
-use crate::sensors::Sensor;
+use crate::sensors::{Accuracy, Role, Sensor, SensorFile};
 use crate::uncertainty::on_its_way;
 use anergy_core::clock::Time;
 use anergy_simulation::model::{DriverSpec, Place};
@@ -24,6 +24,22 @@ const APART: f64 = 2.5;
 const OFF: f64 = 5.0;
 /// A flow meter with an offset reads it as exactly as so many standard deviations of its noise.
 const STILL: f64 = 3.0;
+
+/// A command that reads nothing but its noise reads the lower end of its range.
+pub(crate) fn off_is_off(
+    run: &mut Run,
+    sensors: &SensorFile,
+    ranges: &[(f64, f64)],
+    accuracy: &[Accuracy],
+) {
+    for (i, sensor) in sensors.sensor.iter().enumerate() {
+        if sensor.role == Role::Input && sensor.si() == "1" {
+            let (off, _) = ranges[i];
+            let is_off = |y: f64| y < off + OFF * accuracy[i].noise;
+            run.tracks[i].value.iter_mut().filter(|y| is_off(**y)).for_each(|y| *y = off);
+        }
+    }
+}
 
 /// A measured input.
 pub(crate) struct Input<'a> {
@@ -196,6 +212,22 @@ mod tests {
         // From off to on between 4 and 5 s: at one moment.
         let halves = input.driver((0.0, 9.0), Time::from_s(0.25).unwrap(), 36);
         assert!(halves.values.iter().all(|v| [0.0, 1.0].contains(v)), "{:?}", halves.values);
+    }
+
+    #[test]
+    fn a_command_that_reads_its_noise_is_off() {
+        let text = "[[sensor]]\ncolumn = \"n\"\nsignal = \"p.speed\"\nunit = \"1\"\nrole = \"input\"\n\
+                    [[sensor]]\ncolumn = \"T\"\nsignal = \"b.t_k\"\nunit = \"degC\"\nrole = \"compare\"\n";
+        let sensors = SensorFile::from_toml(text).unwrap();
+        let value = vec![0.9, 0.002, 0.0, 0.004, 0.006, 0.9];
+        let track = Track { time_s: (0..6).map(f64::from).collect(), value };
+        let tracks = vec![track.clone(), track.clone()];
+        let mut run = Run { name: String::new(), tracks, span_s: (0.0, 5.0) };
+        let accuracy = [Accuracy { noise: 1e-3, ..sensors.sensor[0].accuracy(0.5, 0.9) }; 2];
+        off_is_off(&mut run, &sensors, &[(0.0, 1.0); 2], &accuracy);
+        assert_eq!(run.tracks[0].value, [0.9, 0.0, 0.0, 0.0, 0.006, 0.9]);
+        // A temperature is as it is read.
+        assert_eq!(run.tracks[1], track);
     }
 
     #[test]

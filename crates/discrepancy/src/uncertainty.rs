@@ -178,7 +178,7 @@ fn drawn(experiment: &Experiment, draw: u64) -> Experiment {
                     (x / 12.0_f64.sqrt()).clamp(-LATEST, LATEST)
                 };
                 let switches = [Kind::Flow, Kind::Command].contains(&kind);
-                let moved = switches.then(|| switched(track, &mut later));
+                let moved = switches.then(|| switched(track, kind, &mut later));
                 run.tracks[i] = redrawn(moved.as_ref().unwrap_or(track), noise, kind, &mut random);
             }
         }
@@ -194,20 +194,20 @@ fn switched_at(experiment: &Experiment, later: f64) -> Option<Experiment> {
     let mut other = experiment.clone();
     for run in &mut other.runs {
         for &i in &commands {
-            run.tracks[i] = switched(&run.tracks[i], || later);
+            run.tracks[i] = switched(&run.tracks[i], Kind::Command, || later);
         }
     }
     (!commands.is_empty()).then_some(other)
 }
 
-/// A command or a flow, switched on and off later than in the middle between two readings, by these shares of the time between them; one that
-/// was read on its way moved when it was read.
-fn switched(track: &Track, mut later: impl FnMut() -> f64) -> Track {
+/// A command or a flow, switched on and off later than in the middle between two readings, by these shares of the time between them; a flow
+/// that was read on its way moved when it was read.
+fn switched(track: &Track, kind: Kind, mut later: impl FnMut() -> f64) -> Track {
     let usual_s = interval_s(track);
     let mut moved = track.clone();
     for i in 1..track.value.len() {
-        let switches =
-            (track.value[i] == 0.0) != (track.value[i - 1] == 0.0) && !on_its_way(&track.value, i);
+        let is_on_its_way = kind == Kind::Flow && on_its_way(&track.value, i);
+        let switches = (track.value[i] == 0.0) != (track.value[i - 1] == 0.0) && !is_on_its_way;
         if switches && track.time_s[i] - track.time_s[i - 1] < GAP * usual_s {
             // Both readings beside it: the order stays.
             let moved_s = (track.time_s[i] - track.time_s[i - 1]) * later();
@@ -342,7 +342,7 @@ mod tests {
             value: vec![0.0, 0.0, 0.6, 0.6, 0.0, 0.0],
         };
         // 4.5 s later: both readings beside each switch, which lies between them.
-        let late = switched(&track, || LATEST);
+        let late = switched(&track, Kind::Command, || LATEST);
         assert_eq!(late.time_s, [0.0, 14.5, 24.5, 34.5, 44.5, 50.0]);
         let drawn = redrawn(&late, 0.01, Kind::Command, &mut Pcg32::new(1, 1));
         // One more reading within the run; a load of nothing stays nothing, and there is none between.
@@ -350,6 +350,11 @@ mod tests {
         let off: Vec<bool> = drawn.value.iter().map(|y| *y == 0.0).collect();
         assert_eq!(off, [true, true, false, false, false, true, true]);
         assert!((drawn.value[2] - 0.6).abs() < 0.05 && drawn.value[2] != 0.6);
+        // A start that was read while the speed rose, at 20 s, was somewhen since 10 s; of a flow its moment is known.
+        let rising =
+            Track { value: vec![0.0, 0.0, 0.5, 0.6, 0.6, 0.6], time_s: track.time_s.clone() };
+        let moved = |kind| switched(&rising, kind, || LATEST).time_s[2] - 20.0;
+        assert_eq!((moved(Kind::Command), moved(Kind::Flow)), (4.5, 0.0));
     }
 
     #[test]

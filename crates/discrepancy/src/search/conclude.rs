@@ -220,6 +220,7 @@ mod tests {
             takes_along: 0.0,
             tolerated: false,
             within: false,
+            is_open: false,
             validation_z: 1.0,
             reduction: 0.5,
             flags: Vec::new(),
@@ -248,6 +249,9 @@ mod tests {
         // A drift within the class of its sensor is none.
         let tolerated = Finding { within: true, ..finding("A", 30.0) };
         assert!(class(&[tolerated, finding("B", 29.0)], &[true, false], 3.0).is_empty());
+        // Nor is an effect of which blocks of time leave open whether it is there.
+        let open = Finding { is_open: true, ..finding("A", 30.0) };
+        assert!(class(&[open], &[true], 3.0).is_empty());
         // Within what the sensors promise only what is very sure counts.
         assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
         assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);

@@ -67,13 +67,16 @@ impl Search<'_> {
             let (elpd, elpd_error) = elpd::difference(&elpd, &of_null);
             let one = |(&k, &place): (&usize, &usize)| {
                 let candidate = &self.all[k];
+                let estimate = self.estimate(t, place);
+                let holds = |none: f64| (estimate.lo..=estimate.hi).contains(&none);
                 Finding {
                     id: candidate.id,
                     component: candidate.component.clone(),
                     words: candidate.words,
                     parameter: candidate.parameter.0,
                     unit: candidate.parameter.1,
-                    estimate: self.estimate(t, place),
+                    estimate,
+                    is_open: candidate.neutral().is_some_and(holds),
                     profile: None,
                     beside: values_beside(candidate, &t.unknowns, &t.fit.at),
                     probability: if refuted(t) { 0.0 } else { TRIED * weight(t) / total },
