@@ -17,8 +17,8 @@ impl Search<'_> {
         let parallel: Vec<bool> =
             round.tried.iter().map(|t| cosine(&round.tried[0], t) > PARALLEL).collect();
         let class = class(&round.findings, &parallel, round.null_z);
-        let probability: f64 = class.iter().map(|f| f.probability).sum();
-        let by_chance = probability <= EVEN && !is_discrepancy(round.null_z, worst);
+        let class = with_rivals(class, &round.findings, round.null_z);
+        let by_chance = probability(&class) <= EVEN && !is_discrepancy(round.null_z, worst);
         if by_chance { Vec::new() } else { with_others(class, &round.findings) }
     }
 
@@ -101,13 +101,25 @@ fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
     class
 }
 
+/// Where a class has no more than half of the probability because others that would win too have the rest of it, all of these: that one of
+/// them is missing is sure, which one is not.
+fn with_rivals(class: Vec<Finding>, findings: &[Finding], null_z: f64) -> Vec<Finding> {
+    let wins = |f: &&Finding| f.probability > 0.0 && wins(f, null_z);
+    let rivals: Vec<Finding> = findings.iter().filter(wins).cloned().collect();
+    let is_split = probability(&class) <= EVEN && probability(&rivals) > EVEN;
+    if is_split && !class.is_empty() { rivals } else { class }
+}
+
+fn probability(findings: &[Finding]) -> f64 {
+    findings.iter().map(|f| f.probability).sum()
+}
+
 /// A class with the next in probability, no further behind the winner than [`BEHIND`], until it holds [`MOST_OF_IT`] of what all that
 /// was tried has together.
 fn with_others(mut class: Vec<Finding>, findings: &[Finding]) -> Vec<Finding> {
     let Some(most) = class.iter().map(|f| f.evidence).max_by(f64::total_cmp) else {
         return class;
     };
-    let probability = |findings: &[Finding]| findings.iter().map(|f| f.probability).sum::<f64>();
     let is_new = |f: &&Finding| class.iter().all(|c| (c.id, &c.component) != (f.id, &f.component));
     let mut others: Vec<Finding> = findings.iter().filter(is_new).cloned().collect();
     others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
@@ -266,6 +278,19 @@ mod tests {
         // Another one that is more plausible, but not as sure, comes second.
         let plausible = Finding { strain: 1.0, ..finding("B", 12.5) };
         assert_eq!(ids(&class(&[strained(5.5), plausible], &[true, false], 0.7)), ["A", "B"]);
+    }
+
+    #[test]
+    fn what_rivals_share_is_not_by_chance() {
+        let of = |id, evidence, probability| Finding { probability, ..finding(id, evidence) };
+        let all =
+            [of("A", 119.0, 0.29), of("B", 94.0, 0.44), of("C", 83.0, 0.0), of("D", 2.0, 0.1)];
+        let class = |all: &[Finding]| ids(&with_rivals(all[..1].to_vec(), all, 2.7)).join(" ");
+        // C is refuted, D would not win.
+        assert_eq!(class(&all), "A B");
+        assert_eq!(class(&[of("A", 119.0, 0.6), all[1].clone()]), "A");
+        assert_eq!(class(&[of("A", 119.0, 0.29), of("B", 94.0, 0.1)]), "A");
+        assert!(with_rivals(Vec::new(), &all, 2.7).is_empty());
     }
 
     #[test]
