@@ -65,11 +65,7 @@ impl Experiment {
     ///
     /// # Errors
     /// A signal or channel that the model does not have, a unit that does not fit, a model that does not build.
-    pub fn new(
-        model: Model,
-        sensors: SensorFile,
-        mut runs: Vec<Run>,
-    ) -> Result<Self, ExplainError> {
+    pub fn new(model: Model, sensors: SensorFile, runs: Vec<Run>) -> Result<Self, ExplainError> {
         let plan = build(&model).map_err(ExplainError::Model)?;
         let shortest_s = runs.iter().map(|r| r.span_s.1 - r.span_s.0).fold(f64::INFINITY, f64::min);
         for sensor in &sensors.sensor {
@@ -146,7 +142,7 @@ impl Experiment {
             spec.map_or((f64::NEG_INFINITY, f64::INFINITY), |spec| (spec.min, spec.max))
         };
         let ranges: Vec<(f64, f64)> = sensors.sensor.iter().map(range).collect();
-        runs.iter_mut().for_each(|run| off_is_off(run, &sensors, &ranges, &accuracy));
+        let runs = off_is_off(runs, &sensors, &ranges, &accuracy);
         let step = plan.step();
         Ok(Self {
             model,

@@ -25,20 +25,22 @@ const OFF: f64 = 5.0;
 /// A flow meter with an offset reads it as exactly as so many standard deviations of its noise.
 const STILL: f64 = 3.0;
 
-/// A command that reads nothing but its noise reads the lower end of its range.
+/// Runs in which a command that reads nothing but its noise reads the lower end of its range.
 pub(crate) fn off_is_off(
-    run: &mut Run,
+    mut runs: Vec<Run>,
     sensors: &SensorFile,
     ranges: &[(f64, f64)],
     accuracy: &[Accuracy],
-) {
+) -> Vec<Run> {
     for (i, sensor) in sensors.sensor.iter().enumerate() {
         if sensor.role == Role::Input && sensor.si() == "1" {
             let (off, _) = ranges[i];
             let is_off = |y: f64| y < off + OFF * accuracy[i].noise;
-            run.tracks[i].value.iter_mut().filter(|y| is_off(**y)).for_each(|y| *y = off);
+            let values = runs.iter_mut().flat_map(|run| &mut run.tracks[i].value);
+            values.filter(|y| is_off(**y)).for_each(|y| *y = off);
         }
     }
+    runs
 }
 
 /// A measured input.
@@ -222,12 +224,12 @@ mod tests {
         let value = vec![0.9, 0.002, 0.0, 0.004, 0.006, 0.9];
         let track = Track { time_s: (0..6).map(f64::from).collect(), value };
         let tracks = vec![track.clone(), track.clone()];
-        let mut run = Run { name: String::new(), tracks, span_s: (0.0, 5.0) };
+        let runs = vec![Run { name: String::new(), tracks, span_s: (0.0, 5.0) }];
         let accuracy = [Accuracy { noise: 1e-3, ..sensors.sensor[0].accuracy(0.5, 0.9) }; 2];
-        off_is_off(&mut run, &sensors, &[(0.0, 1.0); 2], &accuracy);
-        assert_eq!(run.tracks[0].value, [0.9, 0.0, 0.0, 0.0, 0.006, 0.9]);
+        let runs = off_is_off(runs, &sensors, &[(0.0, 1.0); 2], &accuracy);
+        assert_eq!(runs[0].tracks[0].value, [0.9, 0.0, 0.0, 0.0, 0.006, 0.9]);
         // A temperature is as it is read.
-        assert_eq!(run.tracks[1], track);
+        assert_eq!(runs[0].tracks[1], track);
     }
 
     #[test]
