@@ -102,7 +102,7 @@ impl Candidate {
         tolerances.iter().any(|tolerance| tolerance.target == self.unknown.target)
     }
 
-    /// The value at which it is none, where it has one, and nothing else of it makes it one.
+    /// The value of its parameter at which it is none; nothing where there is no such value, or where further parameters make it one too.
     pub(crate) fn neutral(&self) -> Option<f64> {
         let with_others = |beside: &Unknown| matches!(beside.target, Target::Effect { .. });
         let unknown = &self.unknown;

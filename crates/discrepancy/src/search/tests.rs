@@ -26,8 +26,8 @@ fn search<'a>(experiment: &'a Experiment, spread: &'a Spread, all: &'a [Candidat
     Search::new(experiment, spread, all, base, likelihood, (0..n).collect())
 }
 
-/// A search that has taken both candidates, one after the other.
-fn with_both<'a>(
+/// A search that has taken all candidates, one after the other.
+fn with_all<'a>(
     experiment: &'a Experiment,
     spread: &'a Spread,
     all: &'a [Candidate],
@@ -36,7 +36,7 @@ fn with_both<'a>(
     let unknowns: &[Unknown] = &search.base;
     let at: Vec<f64> = unknowns.iter().map(|u| u.start).collect();
     settled.null_readings = experiment.readings(unknowns, &at).unwrap();
-    for k in 0..2 {
+    for k in 0..all.len() {
         let start = Start { candidates: vec![k], at: vec![0.0], earlier: None };
         let mut tried = search.common().fits(&[start], Care::Quick);
         let null = fit(experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
@@ -51,7 +51,7 @@ fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
     let only_far = bench::experiment(&[loss("far", 3.0)]);
     let all = insulations(&only_far);
     let might = spread(&only_far);
-    let (mut search, mut settled) = with_both(&only_far, &might, &all);
+    let (mut search, mut settled) = with_all(&only_far, &might, &all);
     search.step_back(&mut settled).unwrap();
     assert_eq!(search.taken, [1]);
     assert_eq!((settled.effects.len(), settled.effects[0].component.as_str()), (1, "far"));
@@ -62,7 +62,7 @@ fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
     let of_both = bench::experiment(&[loss("near", 3.0), loss("far", 3.0)]);
     let all = insulations(&of_both);
     let might = spread(&of_both);
-    let (mut search, mut settled) = with_both(&of_both, &might, &all);
+    let (mut search, mut settled) = with_all(&of_both, &might, &all);
     search.step_back(&mut settled).unwrap();
     assert_eq!((search.taken.len(), settled.effects.len()), (2, 2));
     // The first one was fitted without the second: of its value only a fit of both knows.
@@ -73,6 +73,21 @@ fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
         let holds = (effect.estimate.lo..=effect.estimate.hi).contains(&3.0);
         assert!(holds && off(effect) < 0.1, "{effect:?}");
     }
+}
+
+#[test]
+fn a_step_back_asks_for_the_others_again() {
+    // Of the near pipe nothing is wrong: its insulation goes, and the warmer ground that had stood beside it.
+    let experiment = bench::experiment(&[loss("far", 3.0)]);
+    let mut all = candidates(&experiment);
+    let of_near = |c: &Candidate| ["P2", "P3"].contains(&c.id) && c.component == "near";
+    all.retain(|c| of_near(c) || (c.id == "P2" && c.component == "far"));
+    assert_eq!(all.iter().map(|c| c.id).collect::<Vec<_>>(), ["P2", "P3", "P2"]);
+    let might = spread(&experiment);
+    let (mut search, mut settled) = with_all(&experiment, &might, &all);
+    search.step_back(&mut settled).unwrap();
+    assert_eq!(search.taken, [2]);
+    assert_eq!((settled.effects.len(), settled.effects[0].component.as_str()), (1, "far"));
 }
 
 #[test]

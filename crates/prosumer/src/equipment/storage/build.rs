@@ -2,7 +2,7 @@
 
 use super::coil::Coil;
 use super::jet::Jet;
-use super::layers::{Layers, MAX_LAYERS};
+use super::layers::{Layers, MAX_LAYERS, side_and_section_m2};
 use super::ports::{MAX_PORTS, Openings, refused};
 use super::rod::Rod;
 use super::tank::{Scheme, Tank};
@@ -11,7 +11,6 @@ use super::{StorageCoil, StorageParams, StorageRod};
 use crate::equipment::liquid;
 use crate::thermal_unit::UnitError;
 use anergy_core::medium::Medium;
-use std::f64::consts::PI;
 
 /// Loss of a storage of which nothing is said, W/(m2 K).
 pub const U_W_M2_K: f64 = 0.35;
@@ -151,9 +150,8 @@ impl StorageParams {
 
     /// Conductance to the surroundings, of envelope and bridges together, W/K.
     pub fn loss_w_k(&self) -> f64 {
-        let area_m2 = self.volume_m3 / self.height_m;
-        let side_m2 = (4.0 * PI * area_m2).sqrt() * self.height_m;
-        let of_envelope = self.u_w_m2_k.unwrap_or(U_W_M2_K) * (side_m2 + 2.0 * area_m2);
+        let (side, section) = side_and_section_m2(self.volume_m3, self.height_m);
+        let of_envelope = self.u_w_m2_k.unwrap_or(U_W_M2_K) * (side + 2.0 * section);
         self.ua_w_k.unwrap_or(of_envelope) + self.bridges_w_k.iter().sum::<f64>()
     }
 

@@ -20,6 +20,12 @@ pub(super) struct Layers {
     pub(super) heat_capacity_j_kg_k: f64,
 }
 
+/// Side and cross-section of an upright cylinder, m2.
+pub(super) fn side_and_section_m2(volume_m3: f64, height_m: f64) -> (f64, f64) {
+    let section = volume_m3 / height_m;
+    (PI * (4.0 * section / PI).sqrt() * height_m, section)
+}
+
 impl Layers {
     /// Mass of the water of a layer, kg.
     pub(super) fn layer_kg(&self) -> f64 {
@@ -42,9 +48,8 @@ impl Layers {
 
     /// Envelope of each layer, m2.
     pub(super) fn envelope_m2(&self) -> Vec<f64> {
-        let section = self.cross_section_m2();
-        let side = PI * (4.0 * section / PI).sqrt() * self.height_m / self.count as f64;
-        let mut areas = vec![side; self.count];
+        let (side, section) = side_and_section_m2(self.volume_m3, self.height_m);
+        let mut areas = vec![side / self.count as f64; self.count];
         areas[0] += section;
         areas[self.count - 1] += section;
         areas
