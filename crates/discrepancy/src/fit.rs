@@ -1,6 +1,7 @@
 //! The most probable values of the unknowns, and how well the data speak for a set of them.
 //!
-//! **Equation** minimise `F = sum e^2 + sum ((x - mean)/sd)^2` over the coordinates `x`, by Levenberg-Marquardt
+//! **Equation** minimise `F = sum e^2 + sum f(x)` over the coordinates `x`, `f` twice the fall of the logarithm of their priors
+//! ([`Unknown::fall`]), by Levenberg-Marquardt
 //! with forward differences, in between corrected by Broyden's rule. `e` are the residuals
 //! `z = (y - yhat)/sigma`, whitened, as they count ([`Likelihood`]). The logarithm of the evidence (Laplace) is
 //! `-F/2 - log det(I + S J^T J S)/2`, `J` the sensitivities of `e`, `S = diag(sd)`, but for a constant of the data.
@@ -167,7 +168,7 @@ pub fn fit(
     for _ in 0..MAX_STEPS {
         let weighted = here.weighted(&sensitivity);
         let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
-        let hessian = curvature(&weighted, unknowns);
+        let hessian = curvature_at(&weighted, unknowns, &at);
         let (mut gained, mut promised) = (0.0, 0.0);
         for _ in 0..6 {
             let mut damped = hessian.clone();
@@ -232,7 +233,8 @@ pub fn fit(
         (damping, fresh, since) = (1e-3, true, 0.0);
         let weighted = here.weighted(&sensitivity);
         let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
-        let step = curvature(&weighted, unknowns).cholesky().map(|factor| factor.solve(&gradient));
+        let step =
+            curvature_at(&weighted, unknowns, &at).cholesky().map(|factor| factor.solve(&gradient));
         // What a step with the true sensitivities would still gain.
         if step.is_none_or(|step| 0.5 * step.dot(&gradient) < ENOUGH) {
             break;
@@ -272,7 +274,7 @@ impl Problem<'_> {
     fn point(&self, simulated: Simulated, readings: Vec<f64>, at: &[f64]) -> Point {
         let z = self.likelihood.z(self.experiment, &readings);
         let e = self.likelihood.whitened(|i| z[i]);
-        let prior = self.unknowns.iter().zip(at).map(|(u, x)| ((x - u.mean) / u.sd).powi(2));
+        let prior = self.unknowns.iter().zip(at).map(|(u, x)| u.fall(*x));
         let counted = self.likelihood.counted(&e);
         let objective = counted.0.norm_squared() + prior.sum::<f64>();
         Point { simulated, readings, e, counted, objective }
@@ -327,7 +329,7 @@ impl Problem<'_> {
     }
 
     fn prior_slope(&self, at: &[f64]) -> DVector<f64> {
-        let slope = self.unknowns.iter().zip(at).map(|(u, x)| (x - u.mean) / (u.sd * u.sd));
+        let slope = self.unknowns.iter().zip(at).map(|(u, x)| u.slope(*x));
         DVector::from_iterator(self.unknowns.len(), slope)
     }
 
@@ -379,11 +381,24 @@ impl Problem<'_> {
     }
 }
 
-/// Curvature of half the objective.
+/// Curvature of half the objective, with the standard deviations of the priors: for how wide they all are.
 pub(crate) fn curvature(sensitivity: &DMatrix<f64>, unknowns: &[Unknown]) -> DMatrix<f64> {
     let mut hessian = sensitivity.tr_mul(sensitivity);
     for (i, unknown) in unknowns.iter().enumerate() {
         hessian[(i, i)] += 1.0 / (unknown.sd * unknown.sd);
+    }
+    hessian
+}
+
+/// The same with the curvature of the priors at this place, for a step from there.
+pub(crate) fn curvature_at(
+    sensitivity: &DMatrix<f64>,
+    unknowns: &[Unknown],
+    at: &[f64],
+) -> DMatrix<f64> {
+    let mut hessian = sensitivity.tr_mul(sensitivity);
+    for (i, (unknown, at)) in unknowns.iter().zip(at).enumerate() {
+        hessian[(i, i)] += unknown.curvature(*at);
     }
     hessian
 }

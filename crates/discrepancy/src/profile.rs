@@ -1,7 +1,7 @@
 //! The interval of a parameter by its profile likelihood: how far it can move until the data speak against it, with everything
 //! else fitted anew.
 //!
-//! **Equation** `F(x) = min over the others of sum e^2 + sum ((x_j - mean_j)/sd_j)^2`, without the prior of the parameter itself.
+//! **Equation** `F(x) = min over the others of sum e^2 + sum f_j(x_j)`, `f_j` twice the fall of their priors, without the prior of the parameter itself.
 //! The likelihood's 95 % interval holds the `x` with `F(x) - min F < 3.84` (chi-squared, one degree of freedom); it is made as wide as cases say (`WIDE`). On each side
 //! `sqrt(F - min F)` is nearly straight: two fits and the line through them give the end. A side on which it does not rise so
 //! far within the bounds of a fit is open: the data alone do not bound it there.
@@ -46,7 +46,8 @@ pub fn profile(
         for (unknown, at) in fixed.iter_mut().zip(&at.at) {
             unknown.start = *at;
         }
-        fixed[place] = Unknown { mean: x, start: x, sd: FIXED * own.sd, ..own.clone() };
+        fixed[place] =
+            Unknown { mean: x, start: x, sd: FIXED * own.sd, limited: false, ..own.clone() };
         // A value with which the model does not run is none.
         let found = fit(experiment, &fixed, likelihood, &at.slopes, Care::Quick);
         found.map_or(f64::INFINITY, |found| without_own(&found, &fixed, place))
@@ -67,7 +68,7 @@ pub fn profile(
 /// Objective of a fit without the prior of one unknown.
 fn without_own(fit: &Fit, unknowns: &[Unknown], place: usize) -> f64 {
     let priors = unknowns.iter().zip(&fit.at).enumerate().filter(|(j, _)| *j != place);
-    fit.e.norm_squared() + priors.map(|(_, (u, x))| ((x - u.mean) / u.sd).powi(2)).sum::<f64>()
+    fit.e.norm_squared() + priors.map(|(_, (u, x))| u.fall(*x)).sum::<f64>()
 }
 
 /// Where the objective has risen by [`RISE`], from the middle towards a bound; `sd` has the sign of the side.

@@ -14,7 +14,7 @@
 
 use crate::catalogue::Candidate;
 use crate::experiment::Experiment;
-use crate::fit::{Fit, curvature};
+use crate::fit::{Fit, curvature_at};
 use crate::likelihood::Likelihood;
 use crate::unknown::Unknown;
 use anergy_core::cores::on_all_cores;
@@ -54,7 +54,9 @@ pub struct Without<'a> {
 impl Without<'_> {
     /// The first look at candidates, best first.
     pub fn screen(&self, all: &[Candidate], open: &[usize]) -> Vec<Screened> {
-        let Some(factor) = curvature(&self.fit.sensitivity, self.unknowns).cholesky() else {
+        let Some(factor) =
+            curvature_at(&self.fit.sensitivity, self.unknowns, &self.fit.at).cholesky()
+        else {
             return Vec::new();
         };
         let n = &self.fit.sensitivity;
@@ -101,7 +103,7 @@ impl Without<'_> {
     /// of the fit.
     fn left(&self, factor: &Cholesky<f64, Dyn>) -> (DVector<f64>, DVector<f64>) {
         let (n, fit) = (&self.fit.sensitivity, self.fit);
-        let pull = |(u, x): (&Unknown, &f64)| (x - u.mean) / (u.sd * u.sd);
+        let pull = |(u, x): (&Unknown, &f64)| u.slope(*x);
         let pull = self.unknowns.iter().zip(&fit.at).map(pull);
         let pull = DVector::from_iterator(self.unknowns.len(), pull);
         let moved = factor.solve(&(n.tr_mul(&fit.e) - pull));
@@ -139,7 +141,7 @@ impl Without<'_> {
         let a = along / size;
         let gain = 0.5 * a * along;
         // No more than there is to gain.
-        let far = |(u, x): (&Unknown, &f64)| ((x - u.mean) / u.sd).powi(2);
+        let far = |(u, x): (&Unknown, &f64)| u.fall(*x);
         let strain = self.unknowns.iter().zip(&self.fit.at).map(far).sum::<f64>();
         if gain > 0.5 * (self.fit.e.norm_squared() + strain) {
             return None;

@@ -260,7 +260,7 @@ impl<'a> Search<'a> {
         let looked = self.screen(&quick, &open);
         watch.lap("screen");
         let could = looked.first().map_or(0.0, |s| s.gain);
-        let far = |(u, x): (&Unknown, &f64)| ((x - u.mean) / u.sd).powi(2);
+        let far = |(u, x): (&Unknown, &f64)| u.fall(*x);
         let strain = 0.5 * self.base.iter().zip(&quick.at).map(far).sum::<f64>();
         if could < WINS && strain < STRAINS && null_z < UNEXPLAINED {
             return Ok(None);

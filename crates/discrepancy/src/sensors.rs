@@ -2,7 +2,8 @@
 //!
 //! **Accuracy** a class states two things: a constant bias, the same for all samples of a sensor, of which only
 //! the size is known beforehand, and noise that is new in every sample. A largest permissible error `e` is taken
-//! as a rectangular distribution, `e/sqrt(3)`. Resolution adds `lsb/sqrt(12)` to the noise.
+//! as a rectangular distribution, `e/sqrt(3)`. To white noise that a data sheet states, 1/f noise of half its size is
+//! added, and `lsb/sqrt(12)` of the resolution.
 //!
 //! **Sources** EN 60751 (Pt100 classes), EN 1434 (heat meters).
 
@@ -10,6 +11,9 @@ use crate::error::ExplainError;
 use crate::unknown::Target;
 use anergy_core::units::Unit;
 use serde::{Deserialize, Serialize};
+
+/// 1/f noise, which data sheets leave out, over the white noise that they state.
+const ONE_OVER_F: f64 = 0.5;
 
 /// What a column is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -252,7 +256,8 @@ impl Sensor {
             (Class::Unknown, _) => (0.0, 0.05, 0.01 * middle),
         };
         let lsb = self.difference_to_si(self.quantisation);
-        let noise = (noise * noise + lsb * lsb / 12.0).sqrt().max(1e-12);
+        let noise =
+            (noise * noise * (1.0 + ONE_OVER_F.powi(2)) + lsb * lsb / 12.0).sqrt().max(1e-12);
         Accuracy { bias, gain, noise }
     }
 }
@@ -268,10 +273,10 @@ mod tests {
         let sensor = &SensorFile::from_toml(text).unwrap().sensor[0];
         assert_eq!(sensor.si(), "k");
         assert_eq!(sensor.to_si(60.0), 333.15);
-        // (0.15 + 0.12)/sqrt(3) = 0.1559 K at 60 degC; sqrt(0.02^2 + 0.01/12) = 0.03512 K.
+        // (0.15 + 0.12)/sqrt(3) = 0.1559 K at 60 degC; sqrt(1.25 0.02^2 + 0.01/12) = 0.03651 K.
         let accuracy = sensor.accuracy(333.15, 340.0);
         assert!((accuracy.bias - 0.1559).abs() < 1e-4, "{accuracy:?}");
-        assert!((accuracy.noise - 0.035_12).abs() < 1e-5, "{accuracy:?}");
+        assert!((accuracy.noise - 0.036_51).abs() < 1e-5, "{accuracy:?}");
     }
 
     #[test]

@@ -1,7 +1,12 @@
 //! What is not exactly known: accuracy of the sensors, tolerances of the model, strength of an effect.
 //!
-//! An unknown has a prior: the normal distribution of its coordinate around a mean. The coordinate of a
-//! strength that spans decades is its logarithm.
+//! An unknown has a prior: the normal distribution of its coordinate around a mean, or, where limits are stated (the largest
+//! permissible error of a sensor, a tolerance of a length), anything within them. The coordinate of a strength that spans decades is
+//! its logarithm.
+//!
+//! **Equation** with `u = (x - mean)/sd` the logarithm of the density falls by `u^2/2`; of a range of limits `+-h`, `sd = h/root 3`,
+//! by `(0.1 u^2 + max(|u| - root 3, 0)^2/0.35^2)/2`: at its limit by 0.15, where a normal distribution of this standard deviation has
+//! fallen by 1.5 as if many at their limits at once were a wonder, and at twice the limit by 12.8, where that has by 6 only.
 
 use serde::Serialize;
 use std::fmt;
@@ -87,19 +92,64 @@ pub struct Unknown {
     pub sd: f64,
     /// Coordinate at which a fit starts.
     pub start: f64,
+    /// Whether it is known to lie within limits, root 3 standard deviations from the middle, and anywhere there is as likely.
+    pub limited: bool,
 }
+
+/// Half of a range of limits over its standard deviation.
+const ROOT3: f64 = 1.732_050_807_568_877_2;
+/// What is left within limits of the pull of a normal distribution to its middle, that what data do not say has a value at all.
+const PULL: f64 = 0.1;
+/// How far beyond its limits a quantity may be, standard deviations of its range: a fifth of the half of it.
+const SOFT: f64 = 0.35;
 
 impl Unknown {
     /// A coordinate that is the value itself.
     pub fn plain(target: Target, mean: f64, sd: f64) -> Self {
-        Self { target, logarithmic: false, mean, sd, start: mean }
+        Self { target, logarithmic: false, mean, sd, start: mean, limited: false }
+    }
+
+    /// The same within limits, of which its standard deviation is a root of three.
+    #[must_use]
+    pub fn limited(self) -> Self {
+        Self { limited: true, ..self }
+    }
+
+    /// Coordinate in standard deviations from the middle, and how far beyond its limits.
+    fn far(&self, coordinate: f64) -> (f64, f64) {
+        let far = (coordinate - self.mean) / self.sd;
+        let beyond = if self.limited { (far.abs() - ROOT3).max(0.0).copysign(far) } else { 0.0 };
+        (far, beyond)
+    }
+
+    fn pull_to_middle(&self) -> f64 {
+        if self.limited { PULL } else { 1.0 }
+    }
+
+    /// Twice the fall of the logarithm of its density from the middle.
+    pub fn fall(&self, coordinate: f64) -> f64 {
+        let (far, beyond) = self.far(coordinate);
+        self.pull_to_middle() * far.powi(2) + (beyond / SOFT).powi(2)
+    }
+
+    /// Half the slope of [`Unknown::fall`].
+    pub fn slope(&self, coordinate: f64) -> f64 {
+        let (far, beyond) = self.far(coordinate);
+        (self.pull_to_middle() * far + beyond / SOFT.powi(2)) / self.sd
+    }
+
+    /// Half its curvature.
+    pub fn curvature(&self, coordinate: f64) -> f64 {
+        let (_, beyond) = self.far(coordinate);
+        let outside = if beyond == 0.0 { 0.0 } else { SOFT.powi(-2) };
+        (self.pull_to_middle() + outside) / self.sd.powi(2)
     }
 
     /// A value that lies between two bounds with 95 % probability, on a logarithmic scale.
     pub fn between(target: Target, low: f64, high: f64) -> Self {
         // 2 * 1.96 standard deviations between the bounds.
         let (mean, sd) = (0.5 * (low.ln() + high.ln()), (high / low).ln() / 3.92);
-        Self { target, logarithmic: true, mean, sd, start: mean }
+        Self { target, logarithmic: true, mean, sd, start: mean, limited: false }
     }
 
     /// The same prior, a fit starts at another value.
@@ -124,4 +174,32 @@ pub struct Estimate {
     pub lo: f64,
     /// Upper end.
     pub hi: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_free_within_and_steep_beyond() {
+        let free = Unknown::plain(Target::Bias(0), 1.0, 0.2);
+        let limited = free.clone().limited();
+        // u = 1, root 3 and 2 root 3; 0.1, 0.3 and 0.1 12 + 3/0.1225 = 25.69.
+        let at = |u: f64| 1.0 + 0.2 * u;
+        for (u, usual, within) in [(1.0, 1.0, 0.1), (ROOT3, 3.0, 0.3), (-2.0 * ROOT3, 12.0, 25.69)]
+        {
+            assert!((free.fall(at(u)) - usual).abs() < 1e-9);
+            assert!((limited.fall(at(u)) - within).abs() < 1e-3, "{}", limited.fall(at(u)));
+        }
+        // Slope and curvature by differences.
+        for unknown in [free, limited] {
+            for u in [-3.0, -1.0, 0.5, 2.5] {
+                let (x, d) = (at(u), 1e-4);
+                let (less, more) = (unknown.fall(x - d), unknown.fall(x + d));
+                assert!((unknown.slope(x) - 0.25 * (more - less) / d).abs() < 1e-5);
+                let bent = 0.5 * (more + less - 2.0 * unknown.fall(x)) / (d * d);
+                assert!((unknown.curvature(x) - bent).abs() < 1e-3 * bent);
+            }
+        }
+    }
 }

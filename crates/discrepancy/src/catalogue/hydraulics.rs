@@ -17,7 +17,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let known = Known::of(experiment);
     let mut add = |id: &'static str, component: &str, sd: f64| {
         if !has(experiment, id, component) {
-            let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd);
+            let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd).limited();
             all.push(Unknown { logarithmic: true, ..factor });
         }
     };

@@ -38,10 +38,14 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         let free = |id| !has(experiment, id, component);
         let moves = |delay, loss| seen.tolerance(component, content_m3(pipe), delay, loss);
         if free("P10") && (pressure || moves(known.length, known.length)) {
-            all.push(Unknown::plain(effect_target("P10", component, "factor"), 1.0, known.length));
+            all.push(
+                Unknown::plain(effect_target("P10", component, "factor"), 1.0, known.length)
+                    .limited(),
+            );
         }
         if free("P2") && moves(0.0, known.loss) {
-            let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, known.loss);
+            let factor =
+                Unknown::plain(effect_target("P2", component, "factor"), 0.0, known.loss).limited();
             all.push(Unknown { logarithmic: true, ..factor });
         }
         if free("P5") && sensed(experiment, "k") && seen.rests(component) {
@@ -55,12 +59,13 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         }
         if pressure && free("P8") {
             let factor =
-                Unknown::plain(effect_target("P8", component, "factor"), 0.0, known.friction);
+                Unknown::plain(effect_target("P8", component, "factor"), 0.0, known.friction)
+                    .limited();
             all.push(Unknown { logarithmic: true, ..factor });
         }
         if free("P3") && moves(0.0, Seen::surroundings(known.surroundings_k)) {
             let target = effect_target("P3", component, "difference_k");
-            all.push(Unknown::plain(target, 0.0, known.surroundings_k));
+            all.push(Unknown::plain(target, 0.0, known.surroundings_k).limited());
         }
     }
 }

@@ -73,10 +73,10 @@ fn moment_s(experiment: &Experiment, sensor: usize) -> f64 {
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     for (i, accuracy) in experiment.accuracy.iter().enumerate() {
         if accuracy.bias > 0.0 {
-            all.push(Unknown::plain(Target::Bias(i), 0.0, accuracy.bias));
+            all.push(Unknown::plain(Target::Bias(i), 0.0, accuracy.bias).limited());
         }
         if accuracy.gain > 0.0 {
-            all.push(Unknown::plain(Target::Gain(i), 1.0, accuracy.gain));
+            all.push(Unknown::plain(Target::Gain(i), 1.0, accuracy.gain).limited());
         }
         if experiment.sensors.sensor[i].role == Role::Compare {
             all.push(Unknown::plain(Target::Clock(i), 0.0, moment_s(experiment, i)));

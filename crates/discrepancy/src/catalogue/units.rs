@@ -29,6 +29,8 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         let mut add = |id: &'static str, field: &'static str, sd: f64| {
             if !has(experiment, id, component) {
                 let factor = Unknown::plain(effect_target(id, component, field), 0.0, sd);
+                // How layers mix has no limits.
+                let factor = if id == "T2" { factor } else { factor.limited() };
                 all.push(Unknown { logarithmic: true, ..factor });
             }
         };

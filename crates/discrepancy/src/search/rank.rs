@@ -6,7 +6,7 @@ use crate::catalogue::Candidate;
 use crate::elpd;
 use crate::experiment::Sample;
 use crate::explain::{Finding, values_beside};
-use crate::fit::Fit;
+use crate::fit::{Fit, WIDE};
 use crate::profile::profile;
 use crate::trial::Tried;
 use crate::unknown::{Estimate, Unknown};
@@ -23,7 +23,7 @@ impl Search<'_> {
             let mut own = t.candidates.iter().zip(&t.places);
             own.any(|(&k, &place)| {
                 let at = t.fit.at[place];
-                self.all[k].refuted(at, at - 1.96 * t.fit.covariance[(place, place)].sqrt())
+                self.all[k].refuted(at, at - WIDE * 1.96 * t.fit.covariance[(place, place)].sqrt())
             })
         };
         let refuted = |t: &Tried| {
@@ -120,7 +120,7 @@ impl Search<'_> {
 /// What it costs that unknowns are off the middle of their ranges, but for those at `places`, nats.
 fn strained(unknowns: &[Unknown], at: &[f64], places: &[usize]) -> f64 {
     let others = (0..unknowns.len()).filter(|i| !places.contains(i));
-    0.5 * others.map(|i| ((at[i] - unknowns[i].mean) / unknowns[i].sd).powi(2)).sum::<f64>()
+    0.5 * others.map(|i| unknowns[i].fall(at[i])).sum::<f64>()
 }
 
 /// Ranges of the fitted samples that belong to one block of time of one sensor.
