@@ -15,20 +15,21 @@ const OPEN: f64 = 0.02;
 
 pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     let known = Known::of(experiment);
-    let mut add = |id: &'static str, component: &str, sd: f64| {
+    let mut add = |id: &'static str, component: &str, sd: f64, declared: Option<f64>| {
         if !has(experiment, id, component) {
-            let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd).limited();
+            let factor = Unknown::plain(effect_target(id, component, "factor"), 0.0, sd);
+            let factor = if declared.is_some() { factor.limited() } else { factor };
             all.push(Unknown { logarithmic: true, ..factor });
         }
     };
     if flows(experiment) {
         for edge in experiment.model.edges.iter().filter(|edge| is_pump(edge)) {
-            add("H3", &edge.id, known.pump_head);
+            add("H3", &edge.id, known.pump_head, known.declared.pump_head);
         }
     }
     if heat(experiment) {
         for component in exchangers(&experiment.model) {
-            add("X1", component, known.exchanger);
+            add("X1", component, known.exchanger, known.declared.exchanger);
         }
     }
 }

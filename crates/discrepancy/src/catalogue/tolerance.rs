@@ -49,6 +49,8 @@ pub(super) struct Known {
     /// to 1 kJ/K per kW of its heat (a wall-hung boiler of 20 kW: 2 to 3 l of water, 10 to 20 kg of metal) over the heat capacity
     /// flow of 20 K at this heat, `1 kW / 20 K = 0.05 kW/K`: 10 to 20 s.
     pub outlet_lag_s: f64,
+    /// What the model declares: limits. What is usual of pumps, exchangers, storages and generators has none.
+    pub declared: ToleranceEntry,
 }
 
 impl Known {
@@ -84,6 +86,7 @@ impl Known {
             part_load: factor(given.part_load, 0.01),
             start: factor(given.start, 0.1),
             outlet_lag_s: plain(given.outlet_lag_s, 15.0),
+            declared: *given,
         }
     }
 }

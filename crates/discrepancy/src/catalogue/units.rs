@@ -26,25 +26,26 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
                 }
             }
         }
-        let mut add = |id: &'static str, field: &'static str, sd: f64| {
+        let mut add = |id: &'static str, field: &'static str, sd: f64, declared: Option<f64>| {
             if !has(experiment, id, component) {
                 let factor = Unknown::plain(effect_target(id, component, field), 0.0, sd);
-                // How layers mix has no limits.
-                let factor = if id == "T2" { factor } else { factor.limited() };
+                let factor = if declared.is_some() { factor.limited() } else { factor };
                 all.push(Unknown { logarithmic: true, ..factor });
             }
         };
         if kind == "storage" && warm {
-            add("T1", "factor", loss_of(experiment, &known, &unit.params));
-            add("T2", "factor", known.storage_mixing);
+            let loss = loss_of(experiment, &known, &unit.params);
+            add("T1", "factor", loss, known.declared.storage_loss);
+            // How layers mix has no limits.
+            add("T2", "factor", known.storage_mixing, None);
         }
         if power && is_generator(kind) {
-            add("G1", "factor", known.efficiency);
-            add("G3", "time_factor", known.start);
+            add("G1", "factor", known.efficiency, known.declared.efficiency);
+            add("G3", "time_factor", known.start, known.declared.start);
         }
         if power && kind == AIR_SOURCE {
             for field in ["factor_20", "factor_40", "factor_60"] {
-                add("G2", field, known.part_load);
+                add("G2", field, known.part_load, known.declared.part_load);
             }
         }
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// `[tolerance]`: how far the numbers of the model may lie from those of the plant without an effect, each anywhere within plus or
 /// minus its tolerance. What is not given is known as well as usual (`docs/src/explain.md`). A run does not depend on it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ToleranceEntry {
     /// Length of a pipe, relative.
