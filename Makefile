@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(CURDIR)/$(VENV)/bin
 
-.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers explain-score explain-stories bench bench-thermal bench-memory bench-peers bench-ensemble learn instructions demo clean
+.PHONY: help test fmt-check lint test-rust test-doc python test-python test-wheel docs validate peers explain-score explain-advice explain-stories bench bench-thermal bench-memory bench-peers bench-ensemble learn instructions demo clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  %-13s %s\n", $$1, $$2}'
@@ -109,6 +109,7 @@ peers: .venv-peers/.installed .venv-heat/.installed ## Networks against EPANET a
 SEED ?= 1
 DRAWS ?= 6
 SCORE ?= target/hidden-effects-$(SEED)
+RESULTS ?= $(notdir $(lastword $(sort $(wildcard $(SCORE)/results-*))))
 explain-score: .venv-score/.installed ## What explain finds in data with a hidden effect: 200 cases, table in docs (SEED, DRAWS)
 	cargo build --release -p anergy
 	for rig in R1 R2 R3; do \
@@ -116,6 +117,10 @@ explain-score: .venv-score/.installed ## What explain finds in data with a hidde
 		.venv-score/bin/python tests/hidden_effects/cases.py $(SCORE) --rig $$rig --seed $(SEED) --draws $(DRAWS) || exit 1; done
 	.venv-score/bin/python tests/hidden_effects/score.py $(SCORE) --out docs/src/validation/explain.md \
 		--engine "$$(git rev-parse --short HEAD)"
+
+explain-advice: .venv-score/.installed ## Does what explain recommends tell a class apart? The classes of an explain-score (RESULTS: its folder of answers) with what was recommended
+	cargo build --release -p anergy
+	.venv-score/bin/python tests/hidden_effects/advice.py $(SCORE) --results $(RESULTS) --out target/explain-advice
 
 explain-stories: .venv-score/.installed ## What experts found in the laboratory, hidden in data: does explain find it? Table in docs
 	cargo build --release -p anergy

@@ -364,3 +364,39 @@ fn data_of_another_topology_are_not_named() {
     let found = explained(&read_of(&format!("{BENCH}{beside}")));
     assert_ne!(found.verdict, Verdict::Named, "{}", found.because);
 }
+
+#[test]
+fn a_sensor_in_the_place_of_another_says_which_of_two_is_wrong() {
+    let warm = "class = \"pt100_a\"\nquantisation = 0.1";
+    let inlet = |column| sensor(column, "plant.temperature_k", "degC", "input", warm);
+    let flow =
+        sensor("flow", "plant.m_flow_kg_s", "kg_h", "input", "class = \"mid\"\nquantisation = 1");
+    let house = sensor("T_house", "house.t_k", "degC", "compare", warm);
+    // The sensor at the inlet reads 2 K too much, the one in its place in a second run what is true.
+    let rows = read_of(BENCH);
+    let run = |name: &str, first: &dyn Fn(f64) -> String| {
+        let row = |[t, t_in, flow, _, t_house, _]: &[f64; 6]| {
+            format!("{t},{name},{},{flow},{t_house}\n", first(*t_in))
+        };
+        rows.iter().map(row).collect::<String>()
+    };
+    let wrong = run("1", &|t_in| format!("{},", t_in + 2.0));
+    let right = run("2", &|t_in| format!(",{t_in}"));
+    let said = |sensors: &str, data: &str| {
+        let data = format!("time_s,run,T_in,T_new,flow,T_house\n{data}");
+        let found = explain(&experiment(BENCH, sensors, &data).unwrap(), None).unwrap();
+        let of = |all: &[Finding]| -> Vec<String> {
+            all.iter().map(|f| format!("{} {}", f.id, f.component)).collect()
+        };
+        (found.verdict, of(&found.effects), of(&found.class))
+    };
+    let (verdict, _, class) = said(&(inlet("T_in") + &flow + &house), &wrong);
+    assert_eq!(verdict, Verdict::Class);
+    assert!(
+        ["S1 T_in", "S1 T_house"].iter().all(|s| class.contains(&(*s).to_owned())),
+        "{class:?}"
+    );
+    let both = inlet("T_in") + &inlet("T_new") + &flow + &house;
+    let (verdict, effects, _) = said(&both, &(wrong + &right));
+    assert_eq!((verdict, effects.join(" ").as_str()), (Verdict::Named, "S1 T_in"));
+}

@@ -8,15 +8,17 @@ A draw is one bench and one experiment; from it come several cases, each with it
 
 import argparse
 import copy
+import dataclasses
 import importlib
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 
 import broken
 from detect import Look, fitted, shifted, slow, still, stratum
-from sensors import JUMPS_AT, ROOT3, UNKNOWN_LAG_S, draw, measure, spoil
+from sensors import JUMPS_AT, ROOT3, UNKNOWN_LAG_S, draw, longer_s, measure, spoil
 
 RIGS = {"R1": "rig1", "R2": "rig2", "R3": "rig3"}
 # Range of the expected gain in log-likelihood that is aimed at.
@@ -190,10 +192,31 @@ def whole(effect, value, truth, sensors, clocks):
     return value + beside.get(parameter, 0.0)
 
 
-def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
-    """Writes a case with these effects [(entry of d.effects, value)]; what the scorer has to know."""
+def read(sensors, channels, at_s, rng, clocks, by_sensor, plain=False):
+    """What is logged of a run."""
+    table = {}
+    for s in sensors:
+        table[s.column] = measure(s, channels[s.truth][0], at_s, rng, clocks[s.clock], by_sensor.get(s.column))
+        if s.blank:
+            table[s.column][still(channels[s.blank][0], at_s)] = np.nan
+    spoil(table, {s.column for s in sensors if s.role == "input"}, at_s, rng, plain=plain)
+    return table
+
+
+def later(split, from_s, by_s):
+    """A split (the text of the file) of which all from a moment on is later."""
+    moved = lambda m: f"{m[1]} = {float(m[2]) + (by_s if float(m[2]) >= from_s else 0):.0f}"
+    return re.sub(r"(from_s|until_s) = ([0-9.]+)", moved, split)
+
+
+def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None, addition=None):
+    """Writes a case with these effects [(entry of d.effects, value)]; what the scorer has to know.
+
+    `addition` is measured beside: a further `sensor`, or a run of another `rig` after it, in which another sensor may read instead of the `exchanged` one.
+    """
     module, rig = d.module, d.rig
-    sensors = copy.deepcopy(d.sensors)
+    addition = addition or {}
+    sensors = copy.deepcopy(d.sensors) + ([addition["sensor"]] if "sensor" in addition else [])
     within = (lambda: rng.choice([-1, 1]) * rng.uniform(0.9, 1.0)) if edge else (lambda: rng.uniform(-0.6, 0.6))
     truth = dict(d.neutral)
     for key, half in module.tolerances(rig).items():
@@ -219,25 +242,37 @@ def make(d, folder, rng, effects=(), edge=False, unknown=None, spoiler=None):
     channels, oracle = ({name: y[k : k + 1] for name, y in both.items()} for k in (0, 1))
     clocks = {"logger": rng.uniform(-1, 1), "own": rig["every_s"] * (within() if edge else 0.5 * within())}
     odd = rng.choice([s.column for s in sensors if s.role == "compare"])
-    table = {}
     for s in sensors:
         s.clock = "own" if s.column == odd else "logger"
-        table[s.column] = measure(s, channels[s.truth][0], d.at_s, rng, clocks[s.clock], by_sensor.get(s.column))
-        if s.blank:
-            table[s.column][still(channels[s.blank][0], d.at_s)] = np.nan
-    spoil(table, {s.column for s in sensors if s.role == "input"}, d.at_s, rng, plain=spoiler is not None)
-    note = spoiler(table, sensors, d.at_s, rng) if spoiler else None
+    runs = [(d.at_s, read(sensors, channels, d.at_s, rng, clocks, by_sensor, plain=spoiler is not None))]
+    note = spoiler(runs[0][1], sensors, d.at_s, rng) if spoiler else None
+    splits = [module.split(rig)]
+    if "rig" in addition:
+        at_s = np.arange(0, module.duration_s(addition["rig"]), rig["every_s"])
+        then = list(sensors)
+        if addition.get("exchanged"):
+            k = next(k for k, s in enumerate(sensors) if s.column == addition["exchanged"])
+            then[k] = dataclasses.replace(sensors[k], column="new")
+            draw(then[k], d.look.channels[then[k].truth][0], rng, edge)
+            sensors.append(then[k])
+        runs.append((at_s, read(then, module.simulate(addition["rig"], [truth]), at_s, rng, clocks, by_sensor)))
+        splits.append(later(splits[0], module.duration_s(rig) / 2, longer_s(addition["rig"])))
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.toml").write_text(module.model(rig))
     (folder / "sensors.toml").write_text("\n".join(s.toml() for s in sensors))
-    (folder / "split.toml").write_text(module.split(rig))
+    named = splits if len(splits) == 1 else [text.replace("[[block]]", f'[[block]]\nrun = "{k + 1}"') for k, text in enumerate(splits)]
+    (folder / "split.toml").write_text("".join(named))
+    columns = list(dict.fromkeys(column for _, table in runs for column in table))
     with (folder / "data.csv").open("w") as file:
-        print("time_s", *table, sep=",", file=file)
-        for k, t in enumerate(d.at_s):
-            print(f"{t:.0f}", *("" if np.isnan(x[k]) else f"{x[k]:.6g}" for x in table.values()), sep=",", file=file)
+        print("time_s", *(["run"] if len(runs) > 1 else []), *columns, sep=",", file=file)
+        for number, (at_s, table) in enumerate(runs, 1):
+            for k, t in enumerate(at_s):
+                cells = (table[c][k] if c in table else np.nan for c in columns)
+                print(f"{t:.0f}", *([number] if len(runs) > 1 else []), *("" if np.isnan(x) else f"{x:.6g}" for x in cells), sep=",", file=file)
+    table = runs[0][1]
     floor = {}
     for s in sensors:
-        if s.role == "compare" and spoiler is None:
+        if s.role == "compare" and spoiler is None and s.column in table:
             x = s.perfect(oracle[s.truth][0], d.at_s, by_sensor.get(s.column))
             show = module.is_show(rig, d.at_s) & np.isfinite(table[s.column])
             floor[s.column] = float(np.sqrt(np.mean((x[show] - table[s.column][show]) ** 2)))

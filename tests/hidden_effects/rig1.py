@@ -6,7 +6,7 @@ Rich: temperatures between and behind the pipes, pressure losses of both. Poor: 
 import numpy as np
 
 from pipe import Pipe, Plug
-from sensors import FLOW, SPARE_S, TEMPERATURE, Sensor, as_read
+from sensors import FLOW, SPARE_S, TEMPERATURE, Sensor, as_read, longer_s, otherwise
 
 NAME = "R1"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -36,7 +36,7 @@ def block_s(rig):
 
 
 def duration_s(rig):
-    return block_s(rig) * BLOCKS
+    return block_s(rig) * BLOCKS + longer_s(rig)
 
 
 def draw(rng, rich):
@@ -88,7 +88,7 @@ def program(rig):
         flow[begin : begin + int(rig["pause_s"][i])] = 0.0
     flow = np.where(flow == 0, 0, np.convolve(np.pad(flow, 10, mode="edge"), np.full(21, 1 / 21), "valid"))  # pumps ramp
     inlet = np.interp(t, points_t, points) + 0.3 * np.sin(2 * np.pi * t / rig["period"])
-    return as_read(rig, inlet), as_read(rig, flow)
+    return as_read(rig, otherwise(rig, inlet, "degc")), as_read(rig, otherwise(rig, flow, "flow"))
 
 
 def neutral(rig):
@@ -164,6 +164,14 @@ def sensors(rig):
         for name in names:
             all_.append(Sensor(f"dp_{name}", f"{name}.dp_pa", "compare", "dp_0_25", truth=f"{name}.dp", unit="hPa", quantisation=0.1))
     return all_
+
+
+def further(rig, signal):
+    """A sensor that could be added; none where the truth has no such channel."""
+    of, quantity = signal.split(".")
+    if quantity == "dp_pa":
+        return Sensor("new", signal, "compare", "dp_0_25", truth=f"{of}.dp", unit="hPa", quantisation=0.1)
+    return None
 
 
 def tolerances(rig):

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from pipe import Pipe
-from sensors import SPARE_S, TEMPERATURE, Sensor, as_read
+from sensors import SPARE_S, TEMPERATURE, Sensor, as_read, longer_s, otherwise
 
 NAME = "R3"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -36,7 +36,7 @@ INPUTS = {"t1": _warmer("t1_k"), "t2": _warmer("t2_k")}
 
 
 def duration_s(rig):
-    return BLOCK_S * BLOCKS
+    return BLOCK_S * BLOCKS + longer_s(rig)
 
 
 def draw(rng, rich):
@@ -75,7 +75,7 @@ def program(rig):
             speed[begin - 10 : begin] *= np.linspace(1, 0.1, 10)
             speed[begin + 110 : begin + 120] *= np.linspace(0.1, 1, 10)
         out[f"n{k}"] = speed
-    return {name: as_read(rig, x) for name, x in out.items()}
+    return {name: as_read(rig, otherwise(rig, x, "degc" if name[0] == "t" else "command")) for name, x in out.items()}
 
 
 def neutral(rig):
@@ -132,7 +132,7 @@ def simulate(rig, variants):
     t_k, head, kv, extra = {i: of(f"t{i}_k") for i in (1, 2)}, {i: of(f"head{i}") * rig["head"] * 100 for i in (1, 2)}, of("kv"), of("extra1")
     around_k, drift_k = of("around_k"), of("drift_k")
     rho = 985.0
-    out = {c: np.empty((count, n)) for c in ("m1", "m2", "m3", "j1.t", "j2.t", "j3.t", "line12.dp", "line23.dp")}
+    out = {c: np.empty((count, n)) for c in ("m1", "m2", "m3", "j1.t", "j2.t", "j3.t", "stub1.dp", "line12.dp", "stub2.dp", "line23.dp")}
     per_kg = {k: np.full(count, 1e4) for k in pipes}  # Pa/(kg/s)^2
     check = 1e5 * (3600 / (rho * KVS_CHECK)) ** 2 * rho / 1000
     # A weaker pump has less head at every flow.
@@ -160,9 +160,10 @@ def simulate(rig, variants):
         tj3 = pipes["line23"].second(total, tj2, around + own_k["line23"]) + heat["line23"]
         for k, p in pipes.items():
             per_kg[k] = np.where(np.abs(flows[k]) > 1e-3, np.abs(p.dp) / np.maximum(np.abs(flows[k]), 1e-3) ** 2, per_kg[k])
-        for c, x in (("m1", m1), ("m2", m2), ("m3", total), ("j1.t", tj1 + 273.15), ("j2.t", tj2 + 273.15), ("j3.t", tj3 + 273.15),
-                     ("line12.dp", pipes["line12"].dp), ("line23.dp", pipes["line23"].dp)):
+        for c, x in (("m1", m1), ("m2", m2), ("m3", total), ("j1.t", tj1 + 273.15), ("j2.t", tj2 + 273.15), ("j3.t", tj3 + 273.15)):
             out[c][:, i] = x
+        for name, pipe in pipes.items():
+            out[f"{name}.dp"][:, i] = pipe.dp
     for c in ("t1", "t2"):
         out[c] = np.tile(inputs[c] + 273.15, (count, 1))
     for c in ("n1", "n2", "kappa"):
@@ -186,6 +187,20 @@ def sensors(rig):
                   Sensor("dp_12", "line12.dp_pa", "compare", "dp_0_25", truth="line12.dp", unit="hPa", quantisation=0.1),
                   Sensor("dp_23", "line23.dp_pa", "compare", "dp_0_25", truth="line23.dp", unit="hPa", quantisation=0.1)]
     return every
+
+
+def further(rig, signal):
+    """A sensor that could be added; none where the truth has no such channel."""
+    of, quantity = signal.split(".")
+    flows = {"stub1": "m1", "line12": "m1", "stub2": "m2", "line23": "m3"}
+    if quantity == "dp_pa" and of in flows:
+        return Sensor("new", signal, "compare", "dp_0_25", truth=f"{of}.dp", unit="hPa", quantisation=0.1)
+    if quantity == "m_flow_kg_s" and of in flows:
+        return Sensor("new", signal, "compare", "mid", "kg_h", flows[of], quantisation=1.0, signed=True)
+    water = {"b1": ("t1", "m1"), "b2": ("t2", "m2"), "j1": ("j1.t", "m1"), "j2": ("j2.t", "m3")}
+    if quantity == "t_k" and of in water:
+        return Sensor("new", signal, "compare", "pt100_a", truth=water[of][0], blank=water[of][1], **TEMPERATURE)
+    return None
 
 
 def tolerances(rig):

@@ -103,6 +103,28 @@ def held(rig, y):
     return y[np.clip(at_s, 0, y.size - 1).astype(int)]
 
 
+# What a further run does otherwise: half of the flow, so many K more or less, so many seconds without flow, from its middle on.
+HALF_FLOW, WARMER_K, HOTTEST_DEGC, HOLD_S = 0.5, 15.0, 80.0, 1200
+
+
+def otherwise(rig, y, quantity):
+    """What drives the plant in a further run, `rig["otherwise"]`: y every second, a flow, a temperature in degC or anything else."""
+    how, middle = rig.get("otherwise"), (y.size - SPARE_S) // 2
+    if how == "half" and quantity == "flow":
+        return np.concatenate([y[:middle], HALF_FLOW * y[middle:]])
+    if how == "warmer" and quantity == "degc":
+        step_k = WARMER_K if y.max() + WARMER_K < HOTTEST_DEGC else -WARMER_K
+        return y + step_k * np.clip((np.arange(y.size) - middle) / 60.0, 0, 1)
+    if how == "hold":
+        return np.concatenate([y[:middle], np.full(HOLD_S, 0.0 if quantity == "flow" else y[middle - 1]), y[middle:]])
+    return y
+
+
+def longer_s(rig):
+    """Seconds by which a further run is longer."""
+    return HOLD_S if rig.get("otherwise") == "hold" else 0
+
+
 def lagged(y, tau):
     """First order, samples of 1 s."""
     if tau <= 0:

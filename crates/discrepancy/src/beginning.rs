@@ -36,7 +36,9 @@ impl Experiment {
     /// What the temperatures of water that a run reads first say of its beginning.
     pub fn first(&self, run: usize) -> Option<First> {
         let (run, begin_s) = (&self.runs[run], self.runs[run].span_s.0);
-        let of_water = |k: &usize| self.is_of_water(&self.sensors.sensor[*k]);
+        let of_water = |k: &usize| {
+            !run.tracks[*k].value.is_empty() && self.is_of_water(&self.sensors.sensor[*k])
+        };
         let water: Vec<usize> = (0..run.tracks.len()).filter(of_water).collect();
         // A meter that reads nothing while nothing flows reads first what came later.
         let is_early = |k: &usize| {

@@ -1,7 +1,7 @@
 //! The table of measurements: a time in s, an optional `run`, a column per sensor; an empty cell is missing.
 
 use crate::error::ExplainError;
-use crate::sensors::{Role, SensorFile};
+use crate::sensors::{Role, Sensor, SensorFile};
 
 /// What bends so many times more than readings usually do is beside a corner.
 const CORNER: f64 = 2.0;
@@ -16,12 +16,12 @@ pub struct Track {
 }
 
 impl Track {
-    /// Linear between the readings, constant beyond them.
+    /// Linear between the readings, constant beyond them; no number of a sensor that a run does not have.
     pub fn at(&self, time_s: f64) -> f64 {
         let (t, y) = (&self.time_s, &self.value);
         let i = t.partition_point(|x| *x <= time_s);
         if i == 0 {
-            return y[0];
+            return y.first().copied().unwrap_or(f64::NAN);
         }
         if i == t.len() {
             return y[i - 1];
@@ -172,18 +172,28 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
             *track = without_held(track, resolution, least, most);
         }
     }
-    for run in &runs {
-        for (track, sensor) in run.tracks.iter().zip(&sensors.sensor) {
-            if track.value.is_empty() {
-                let name = &run.name;
-                return Err(wrong(format!(
-                    "column \"{}\" of run \"{name}\" is empty",
-                    sensor.column
-                )));
-            }
-        }
+    if let Some((sensor, run)) = without_readings(&runs, sensors) {
+        let (column, name) = (&sensor.column, &run.name);
+        return Err(wrong(format!("column \"{column}\" of run \"{name}\" is empty")));
     }
     Ok(runs)
+}
+
+/// A sensor without readings in a run, where it has none in any, or drives a signal that no other sensor drives there.
+fn without_readings<'a>(runs: &'a [Run], sensors: &'a SensorFile) -> Option<(&'a Sensor, &'a Run)> {
+    let sensors = &sensors.sensor;
+    let reads = |run: &Run, k: usize| !run.tracks[k].value.is_empty();
+    let missing = |(run, k): &(&Run, usize)| {
+        let of = &sensors[*k];
+        let instead = |(i, other): (usize, &Sensor)| {
+            other.role == Role::Input && other.signal == of.signal && reads(run, i)
+        };
+        let never = !runs.iter().any(|run| reads(run, *k));
+        let is_driven = sensors.iter().enumerate().any(instead);
+        !reads(run, *k) && (never || (of.role == Role::Input && !is_driven))
+    };
+    let all = runs.iter().flat_map(|run| (0..sensors.len()).map(move |k| (run, k)));
+    all.clone().find(missing).map(|(run, k)| (&sensors[k], run))
 }
 
 /// Readings that hold before one isolated jump were held by the logger: all but the first of them are missing.
@@ -306,6 +316,34 @@ mod tests {
         assert_eq!(runs[0].tracks[0].time_s, [0.0, 20.0]);
         assert_eq!(runs[0].tracks[0].at(10.0), 294.15);
         assert_eq!(runs[1].tracks[0].at(99.0), 303.15);
+    }
+
+    #[test]
+    fn a_sensor_may_be_absent_from_a_run_where_another_one_drives() {
+        let sensors = SENSORS.to_owned() + &SENSORS.replace("\"T\"", "\"U\"");
+        let rows = |sensors: &str, text: &str| {
+            read(text, &SensorFile::from_toml(sensors).unwrap()).map_err(|e| e.to_string())
+        };
+        let exchanged = "time_s,run,T,U\n0,a,20,\n10,a,21,\n0,b,,30\n10,b,,31\n";
+        let runs = rows(&sensors, exchanged).unwrap();
+        assert_eq!(runs[1].tracks[1].value.len(), 2);
+        assert!(runs[1].tracks[0].at(5.0).is_nan());
+        // The same two as inputs, of one signal or of two; and a column that is never read.
+        let inputs =
+            sensors.replace("compare", "input") + SENSORS.replace("\"T\"", "\"V\"").as_str();
+        let with_v = |text: &str| {
+            text.replace(",T,U", ",T,U,V")
+                .replace("20,", "20,,1")
+                .replace("21,", "21,,2")
+                .replace(",30", ",30,3")
+                .replace(",31", ",31,4")
+        };
+        assert!(rows(&inputs, &with_v(exchanged)).is_ok());
+        let of_two = inputs.replacen("b.t_k", "c.t_k", 1);
+        let refused = rows(&of_two, &with_v(exchanged)).unwrap_err();
+        assert!(refused.contains("column \"U\" of run \"a\" is empty"), "{refused}");
+        let never = rows(&sensors, "time_s,T,U\n0,20,\n10,21,\n").unwrap_err();
+        assert!(never.contains("\"U\""), "{never}");
     }
 
     #[test]

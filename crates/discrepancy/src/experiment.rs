@@ -283,7 +283,7 @@ impl Experiment {
         let rows = ((run.span_s.1 - begin_s) / step.as_s()).ceil() as usize + 1;
         for (i, sensor) in self.sensors.sensor.iter().enumerate() {
             let track = &run.tracks[i];
-            if sensor.role == Role::Input {
+            if sensor.role == Role::Input && !track.value.is_empty() {
                 let (range, response) = (self.ranges[i], &self.response(i, unknowns, at));
                 let noise = self.accuracy[i].noise;
                 let input = Input { sensor, track, response, range, noise };

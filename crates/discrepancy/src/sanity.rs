@@ -47,7 +47,8 @@ pub fn of_data(experiment: &Experiment) -> Vec<String> {
     for run in &experiment.runs {
         let of = of_run(run);
         let most = run.tracks.iter().map(|track| track.value.len()).max().unwrap_or(0);
-        for (k, (track, sensor)) in run.tracks.iter().zip(sensors).enumerate() {
+        let all = run.tracks.iter().zip(sensors).enumerate();
+        for (k, (track, sensor)) in all.filter(|(_, (track, _))| !track.value.is_empty()) {
             let column = &sensor.column;
             let count = track.value.len();
             if (count as f64) < LEAST_SHARE * most as f64 {

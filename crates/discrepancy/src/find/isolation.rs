@@ -159,7 +159,9 @@ impl Measured<'_> {
                 || (cuts.contains(&of) && quantity == "t_k")
         };
         let all = self.experiment.sensors.sensor.iter().enumerate();
-        all.filter(|(_, s)| s.role == Role::Compare && inside(s)).map(|(k, _)| k).collect()
+        let reads = |k: usize| reads_everywhere(self.experiment, k);
+        let tests = |(k, s): &(usize, &Sensor)| s.role == Role::Compare && reads(*k) && inside(s);
+        all.filter(tests).map(|(k, _)| k).collect()
     }
 
     /// Readings of a part in a run: place of the sample and reading.
@@ -292,6 +294,11 @@ impl Measured<'_> {
             });
         from_part && !from_others
     }
+}
+
+/// Whether a sensor was there in every run: where it was not, others may have taken its place.
+fn reads_everywhere(experiment: &Experiment, sensor: usize) -> bool {
+    experiment.runs.iter().all(|run| !run.tracks[sensor].value.is_empty())
 }
 
 /// Times at which boundaries are given: those of the densest track, s.

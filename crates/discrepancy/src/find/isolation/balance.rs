@@ -1,5 +1,6 @@
 //! Which flows and temperatures of the graph are known, and the parts that they cut out.
 
+use super::reads_everywhere;
 use crate::data::Run;
 use crate::experiment::Experiment;
 use crate::inputs::before_lag;
@@ -60,7 +61,8 @@ impl<'a> Measured<'a> {
                 enters.insert(entry.id.as_str(), Sum { constant, ..Sum::default() });
             }
         }
-        for (k, sensor) in experiment.sensors.sensor.iter().enumerate() {
+        let all = experiment.sensors.sensor.iter().enumerate();
+        for (k, sensor) in all.filter(|(k, _)| reads_everywhere(experiment, *k)) {
             let Some((of, quantity)) = sensor.signal.rsplit_once('.') else { continue };
             let is_node = model.nodes.iter().any(|node| node.entry.id == of);
             match quantity {
