@@ -300,7 +300,7 @@ impl<'a> Search<'a> {
         let close = tried.partition_point(|t| t.fit.log_evidence > most - near).min(MOST_CLOSE);
         let thorough: Vec<Start> = tried.drain(..close).map(Start::again).collect();
         tried.extend(self.common().fits(&thorough, Care::Thorough));
-        let null = self.null_beside(null, &tried)?;
+        let null = self.null_beside(null, &tried);
         watch.lap("fits again");
         let null_z = self.z(&null.readings);
         let findings = self.ranked(&null, &mut tried);
@@ -327,11 +327,11 @@ impl<'a> Search<'a> {
     }
 
     /// The fit without an effect once more, from the tolerances that the best one has found: where it was only stuck, the effect
-    /// gains nothing.
-    fn null_beside(&self, null: Fit, tried: &[Tried]) -> Result<Fit, ExplainError> {
+    /// gains nothing. Where the model without the effect does not run with them, they are no start.
+    fn null_beside(&self, null: Fit, tried: &[Tried]) -> Fit {
         let evidence = |t: &&Tried| t.fit.log_evidence;
         let Some(best) = tried.iter().max_by(|a, b| evidence(a).total_cmp(&evidence(b))) else {
-            return Ok(null);
+            return null;
         };
         let from = |u: &Unknown| {
             let place = best.unknowns.iter().position(|v| v.target == u.target);
@@ -340,8 +340,8 @@ impl<'a> Search<'a> {
         };
         let beside: Vec<Unknown> = self.base.iter().map(from).collect();
         let slopes = &best.fit.slopes;
-        let again = fit(self.experiment, &beside, &self.likelihood, slopes, Care::Thorough)?;
-        Ok(if again.log_evidence > null.log_evidence { again } else { null })
+        let again = fit(self.experiment, &beside, &self.likelihood, slopes, Care::Thorough);
+        again.ok().filter(|again| again.log_evidence > null.log_evidence).unwrap_or(null)
     }
 
     /// The power of the likelihood: see [`TEMPERATURE`] and [`LOUD`].

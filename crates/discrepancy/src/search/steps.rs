@@ -28,7 +28,9 @@ impl Search<'_> {
             // What it is made of is uncertain again as it was before.
             base.extend(tolerances(self.experiment).into_iter().filter(|u| candidate.owns(u)));
             let without =
-                fit(self.experiment, &base, &self.likelihood, &self.slopes, Care::Thorough)?;
+                fit(self.experiment, &base, &self.likelihood, &self.slopes, Care::Thorough);
+            // Without which the model does not run is not superfluous.
+            let Ok(without) = without else { continue };
             // What the others leave within what the sensors promise needs no further one that is not very sure.
             let least = if self.z(&without.readings) < WITHIN { SURE } else { KEEPS };
             if with.log_evidence - without.log_evidence < least {

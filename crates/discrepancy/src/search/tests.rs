@@ -190,3 +190,21 @@ fn afresh_tolerances_stand_where_they_were_before_any_fit() {
     assert!((factor - 3.0).abs() < 0.2, "{factor}");
     assert!(best.unknowns.iter().enumerate().all(|(i, _)| !best.fit.at_bound(&best.unknowns, i)));
 }
+
+#[test]
+fn tolerances_with_which_the_model_alone_does_not_run_are_no_start() {
+    let only_far = bench::experiment(&[loss("far", 3.0)]);
+    let all = insulations(&only_far);
+    let might = spread(&only_far);
+    let search = search(&only_far, &might, &all);
+    let null =
+        fit(&only_far, &search.base, &search.likelihood, &Slopes::new(), Care::Quick).unwrap();
+    let start = Start { candidates: vec![1], at: vec![1.0], earlier: None };
+    let mut tried = search.common().fits(&[start], Care::Quick);
+    let is_first = |u: &Unknown| matches!(u.target, Target::Initial(0));
+    let first = tried[0].unknowns.iter().position(is_first).unwrap();
+    // Water of 47 degC is valid until 99 degC.
+    tried[0].fit.at[first] = 60.0;
+    let evidence = null.log_evidence;
+    assert_eq!(search.null_beside(null, &tried).log_evidence, evidence);
+}
