@@ -1,8 +1,7 @@
 //! The most probable values of the unknowns, and how well the data speak for a set of them.
 //!
 //! **Equation** minimise `F = sum e^2 + sum f(x)` over the coordinates `x`, `f` twice the fall of the logarithm of their priors
-//! ([`Unknown::fall`]), by Levenberg-Marquardt
-//! with forward differences, in between corrected by Broyden's rule. `e` are the residuals
+//! ([`Unknown::fall`]), by Levenberg-Marquardt with forward differences, in between corrected by Broyden's rule. `e` are the residuals
 //! `z = (y - yhat)/sigma`, whitened, as they count ([`Likelihood`]). The logarithm of the evidence (Laplace) is
 //! `-F/2 - log det(I + S J^T J S)/2`, `J` the sensitivities of `e`, `S = diag(sd)`, but for a constant of the data.
 //!
