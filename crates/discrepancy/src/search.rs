@@ -29,8 +29,10 @@ const TEMPERATURE: f64 = 1.0;
 const LOUD: f64 = 0.125;
 /// An effect that brings less than this is taken out again, nats.
 const KEEPS: f64 = 2.0;
-/// Effects whose residuals on samples not fitted are so many times the best one's, and take away so much less, are refuted.
+/// Effects whose residuals on samples not fitted are so many times the best one's, and take away so much less, are refuted ...
 const AS_WELL: (f64, f64) = (2.0, 0.25);
+/// ... or are so many times the best one's, however much there was.
+const FAR_WORSE: f64 = 3.0;
 /// An effect that lies so many standard deviations from the middle of its range is no explanation.
 const BEYOND: f64 = 3.0;
 /// Odds are taken to the power of one over this for a probability ...

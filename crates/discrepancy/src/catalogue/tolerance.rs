@@ -112,7 +112,8 @@ mod tests {
         {
             assert!((of(layers, longest_s) - expected).abs() < 1e-6, "{}", of(layers, longest_s));
         }
-        assert_eq!(Known { storage_loss: usual.storage_loss, ..known }, usual);
+        let (storage_loss, declared) = (usual.storage_loss, usual.declared);
+        assert_eq!(Known { storage_loss, declared, ..known }, usual);
         assert!((usual.length - 0.005_773_5).abs() < 1e-7);
     }
 }

@@ -1,7 +1,7 @@
 //! What was tried, best first.
 
 use super::wins::{TOGETHER, together};
-use super::{AS_WELL, Search, TRIED, WARM, excess, prior};
+use super::{AS_WELL, FAR_WORSE, Search, TRIED, WARM, excess, prior};
 use crate::catalogue::Candidate;
 use crate::elpd;
 use crate::experiment::Sample;
@@ -18,7 +18,6 @@ impl Search<'_> {
     pub(super) fn ranked(&self, null: &Fit, tried: &mut Vec<Tried>) -> Vec<Finding> {
         let least = tried.iter().map(|t| self.z(&t.fit.readings)).fold(f64::INFINITY, f64::min);
         let null_z = self.z(&null.readings);
-        let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
         let out = |t: &Tried| {
             let mut own = t.candidates.iter().zip(&t.places);
             own.any(|(&k, &place)| {
@@ -26,10 +25,7 @@ impl Search<'_> {
                 self.all[k].refuted(at, at - WIDE * 1.96 * t.fit.covariance[(place, place)].sqrt())
             })
         };
-        let refuted = |t: &Tried| {
-            let z = self.z(&t.fit.readings);
-            out(t) || (z > AS_WELL.0 * least.max(1.0) && share(z) - share(least) > AS_WELL.1)
-        };
+        let refuted = |t: &Tried| out(t) || leaves_more(self.z(&t.fit.readings), least, null_z);
         tried.sort_by(|a, b| {
             let evidence = || b.fit.log_evidence.total_cmp(&a.fit.log_evidence);
             refuted(a).cmp(&refuted(b)).then_with(evidence)
@@ -123,6 +119,13 @@ fn strained(unknowns: &[Unknown], at: &[f64], places: &[usize]) -> f64 {
     0.5 * others.map(|i| unknowns[i].fall(at[i])).sum::<f64>()
 }
 
+/// Whether residuals on samples not fitted refute an effect beside one that leaves the `least`; there were `null_z` without any.
+fn leaves_more(z: f64, least: f64, null_z: f64) -> bool {
+    let share = |z: f64| excess(z) / excess(null_z).max(1e-9);
+    let times = z / least.max(1.0);
+    times > FAR_WORSE || (times > AS_WELL.0 && share(z) - share(least) > AS_WELL.1)
+}
+
 /// Ranges of the fitted samples that belong to one block of time of one sensor.
 fn blocks(samples: &[Sample], fitted: &[usize]) -> Vec<(usize, usize)> {
     let of = |k: usize| (samples[fitted[k]].run, samples[fitted[k]].sensor);
@@ -175,6 +178,15 @@ fn flags(tried: &Tried, place: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_leaves_twice_as_much_is_refuted_where_that_is_much() {
+        // 2.6^2 - 1 = 5.76 less 0.44 are 85 % of 2.7^2 - 1, and 1 % of 20^2 - 1.
+        assert!(leaves_more(2.6, 1.2, 2.7) && !leaves_more(2.6, 1.2, 20.0));
+        // Below what sensors promise nothing is twice as much; three times as much always is.
+        assert!(!leaves_more(1.9, 0.5, 2.0));
+        assert!(leaves_more(5.3, 1.24, 11.0) && !leaves_more(3.7, 1.24, 11.0));
+    }
 
     #[test]
     fn blocks_end_where_samples_are_missing_or_another_sensor_begins() {
