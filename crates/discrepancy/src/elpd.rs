@@ -7,13 +7,13 @@
 //!
 //! **Sources** Vehtari, Gelman, Gabry 2017 (key `vehtari2017`).
 
-use crate::fit::{Fit, curvature};
-use crate::unknown::Unknown;
+use crate::fit::Fit;
+use crate::unknown::{Unknown, curvature};
 use nalgebra::DVector;
 
 /// Log predictive density of every block; `blocks` are ranges of the fitted samples.
 pub fn by_block(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)]) -> Vec<f64> {
-    let a = curvature(&fit.sensitivity, unknowns);
+    let a = curvature(&fit.sensitivity, unknowns.iter().map(Unknown::precision));
     let Some(whole) = a.clone().cholesky() else { return vec![f64::NEG_INFINITY; blocks.len()] };
     let log_det = |factor: &nalgebra::Cholesky<f64, nalgebra::Dyn>| {
         2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>()
@@ -36,7 +36,7 @@ pub fn by_block(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)]) -> V
 /// badly: it is larger by what the 95 % interval of Student's distribution is wider than the normal one, with the degrees of freedom
 /// of so many squares of unlike size, `3 (sum delta_b^2)^2/sum delta_b^4` (Satterthwaite 1946, key `satterthwaite1946`; the 3 as `E delta^4 = 3 (E delta^2)^2`).
 pub fn jackknife(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)], i: usize) -> f64 {
-    let a = curvature(&fit.sensitivity, unknowns);
+    let a = curvature(&fit.sensitivity, unknowns.iter().map(Unknown::precision));
     let of = |&(from, until): &(usize, usize)| {
         let j = fit.sensitivity.rows(from, until - from);
         let e: DVector<f64> = fit.e.rows(from, until - from).into_owned();

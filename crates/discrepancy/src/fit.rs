@@ -14,7 +14,7 @@
 use crate::error::ExplainError;
 use crate::experiment::{Experiment, Simulated};
 use crate::likelihood::Likelihood;
-use crate::unknown::{Estimate, Target, Unknown};
+use crate::unknown::{Estimate, Target, Unknown, curvature, curvature_at};
 use anergy_core::cores::on_all_cores;
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
@@ -165,9 +165,7 @@ pub fn fit(
     // What the steps have gained since the sensitivities were simulated.
     let mut since = if fresh { 0.0 } else { f64::INFINITY };
     for _ in 0..MAX_STEPS {
-        let weighted = here.weighted(&sensitivity);
-        let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
-        let hessian = curvature_at(&weighted, unknowns, &at);
+        let (gradient, hessian) = problem.downhill(&at, &here, &sensitivity);
         let (mut gained, mut promised) = (0.0, 0.0);
         for _ in 0..6 {
             let mut damped = hessian.clone();
@@ -230,10 +228,8 @@ pub fn fit(
         problem.differences(&at, &here, renewed, &mut slopes)?;
         problem.columns(&slopes, renewed, &mut sensitivity);
         (damping, fresh, since) = (1e-3, true, 0.0);
-        let weighted = here.weighted(&sensitivity);
-        let gradient = weighted.tr_mul(&here.counted.0) - problem.prior_slope(&at);
-        let step =
-            curvature_at(&weighted, unknowns, &at).cholesky().map(|factor| factor.solve(&gradient));
+        let (gradient, hessian) = problem.downhill(&at, &here, &sensitivity);
+        let step = hessian.cholesky().map(|factor| factor.solve(&gradient));
         // What a step with the true sensitivities would still gain.
         if step.is_none_or(|step| 0.5 * step.dot(&gradient) < ENOUGH) {
             break;
@@ -311,7 +307,7 @@ impl Problem<'_> {
         let mut sensitivity = DMatrix::zeros(self.likelihood.fitted.len(), n);
         self.columns(&slopes, &all, &mut sensitivity);
         let sensitivity = here.weighted(&sensitivity);
-        let hessian = curvature(&sensitivity, unknowns);
+        let hessian = curvature(&sensitivity, unknowns.iter().map(Unknown::precision));
         let covariance = hessian
             .clone()
             .cholesky()
@@ -327,9 +323,18 @@ impl Problem<'_> {
         Fit { at, readings, e, weight, log_evidence, covariance, sensitivity, slopes, simulated }
     }
 
-    fn prior_slope(&self, at: &[f64]) -> DVector<f64> {
-        let slope = self.unknowns.iter().zip(at).map(|(u, x)| u.slope(*x));
-        DVector::from_iterator(self.unknowns.len(), slope)
+    /// Half of the fall of the objective with the unknowns, and half of its curvature.
+    fn downhill(
+        &self,
+        at: &[f64],
+        here: &Point,
+        sensitivity: &DMatrix<f64>,
+    ) -> (DVector<f64>, DMatrix<f64>) {
+        let weighted = here.weighted(sensitivity);
+        let slopes = self.unknowns.iter().zip(at).map(|(u, x)| u.slope(*x));
+        let slopes = DVector::from_iterator(at.len(), slopes);
+        let hessian = curvature_at(&weighted, self.unknowns, at);
+        (weighted.tr_mul(&here.counted.0) - slopes, hessian)
     }
 
     /// Simulated sensitivities of the unknowns at `wanted`.
@@ -378,28 +383,6 @@ impl Problem<'_> {
             sensitivity.set_column(j, &self.likelihood.whitened(z));
         }
     }
-}
-
-/// Curvature of half the objective, with the standard deviations of the priors: for how wide they all are.
-pub(crate) fn curvature(sensitivity: &DMatrix<f64>, unknowns: &[Unknown]) -> DMatrix<f64> {
-    let mut hessian = sensitivity.tr_mul(sensitivity);
-    for (i, unknown) in unknowns.iter().enumerate() {
-        hessian[(i, i)] += 1.0 / (unknown.sd * unknown.sd);
-    }
-    hessian
-}
-
-/// The same with the curvature of the priors at this place, for a step from there.
-pub(crate) fn curvature_at(
-    sensitivity: &DMatrix<f64>,
-    unknowns: &[Unknown],
-    at: &[f64],
-) -> DMatrix<f64> {
-    let mut hessian = sensitivity.tr_mul(sensitivity);
-    for (i, (unknown, at)) in unknowns.iter().zip(at).enumerate() {
-        hessian[(i, i)] += unknown.curvature(*at);
-    }
-    hessian
 }
 
 #[cfg(test)]

@@ -14,9 +14,9 @@
 
 use crate::catalogue::Candidate;
 use crate::experiment::Experiment;
-use crate::fit::{Fit, curvature_at};
+use crate::fit::Fit;
 use crate::likelihood::Likelihood;
-use crate::unknown::Unknown;
+use crate::unknown::{Unknown, curvature_at};
 use anergy_core::cores::on_all_cores;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashSet;

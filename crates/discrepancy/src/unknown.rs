@@ -8,6 +8,7 @@
 //! by `(0.1 u^2 + max(|u| - root 3, 0)^2/0.35^2)/2`: at its limit by 0.15, where a normal distribution of this standard deviation has
 //! fallen by 1.5 as if many at their limits at once were a wonder, and at twice the limit by 12.8, where that has by 6 only.
 
+use nalgebra::DMatrix;
 use serde::Serialize;
 use std::fmt;
 
@@ -138,7 +139,12 @@ impl Unknown {
         (self.pull_to_middle() * far + beyond / SOFT.powi(2)) / self.sd
     }
 
-    /// Half its curvature.
+    /// Half of the curvature of [`Unknown::fall`] that a normal distribution of this standard deviation has.
+    pub fn precision(&self) -> f64 {
+        self.sd.powi(-2)
+    }
+
+    /// Half its curvature there.
     pub fn curvature(&self, coordinate: f64) -> f64 {
         let (_, beyond) = self.far(coordinate);
         let outside = if beyond == 0.0 { 0.0 } else { SOFT.powi(-2) };
@@ -163,6 +169,27 @@ impl Unknown {
     pub fn value(&self, coordinate: f64) -> f64 {
         if self.logarithmic { coordinate.exp() } else { coordinate }
     }
+}
+
+/// Curvature of half of what a fit of unknowns minimises: sensitivities of its residuals, and curvatures of the priors of all in order.
+pub(crate) fn curvature(
+    sensitivity: &DMatrix<f64>,
+    priors: impl Iterator<Item = f64>,
+) -> DMatrix<f64> {
+    let mut hessian = sensitivity.tr_mul(sensitivity);
+    for (i, prior) in priors.enumerate() {
+        hessian[(i, i)] += prior;
+    }
+    hessian
+}
+
+/// The same for a step from a place.
+pub(crate) fn curvature_at(
+    sensitivity: &DMatrix<f64>,
+    unknowns: &[Unknown],
+    at: &[f64],
+) -> DMatrix<f64> {
+    curvature(sensitivity, unknowns.iter().zip(at).map(|(u, x)| u.curvature(*x)))
 }
 
 /// A fitted value with its 95 % interval.
