@@ -110,10 +110,10 @@ impl Unknown {
         Self { target, logarithmic: false, mean, sd, start: mean, limited: false }
     }
 
-    /// The same within limits, of which its standard deviation is a root of three.
+    /// The same within limits, of which its standard deviation is a root of three, if these are stated.
     #[must_use]
-    pub fn limited(self) -> Self {
-        Self { limited: true, ..self }
+    pub fn limited(self, are_stated: bool) -> Self {
+        Self { limited: are_stated, ..self }
     }
 
     /// Coordinate in standard deviations from the middle, and how far beyond its limits.
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn limits_are_free_within_and_steep_beyond() {
         let free = Unknown::plain(Target::Bias(0), 1.0, 0.2);
-        let limited = free.clone().limited();
+        let limited = free.clone().limited(true);
         // u = 1, root 3 and 2 root 3; 0.1, 0.3 and 0.1 12 + 3/0.1225 = 25.69.
         let at = |u: f64| 1.0 + 0.2 * u;
         for (u, usual, within) in [(1.0, 1.0, 0.1), (ROOT3, 3.0, 0.3), (-2.0 * ROOT3, 12.0, 25.69)]

@@ -40,12 +40,12 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         if free("P10") && (pressure || moves(known.length, known.length)) {
             all.push(
                 Unknown::plain(effect_target("P10", component, "factor"), 1.0, known.length)
-                    .limited(),
+                    .limited(true),
             );
         }
         if free("P2") && moves(0.0, known.loss) {
-            let factor =
-                Unknown::plain(effect_target("P2", component, "factor"), 0.0, known.loss).limited();
+            let factor = Unknown::plain(effect_target("P2", component, "factor"), 0.0, known.loss)
+                .limited(true);
             all.push(Unknown { logarithmic: true, ..factor });
         }
         if free("P5") && sensed(experiment, "k") && seen.rests(component) {
@@ -60,12 +60,12 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         if pressure && free("P8") {
             let factor =
                 Unknown::plain(effect_target("P8", component, "factor"), 0.0, known.friction)
-                    .limited();
+                    .limited(true);
             all.push(Unknown { logarithmic: true, ..factor });
         }
         if free("P3") && moves(0.0, Seen::surroundings(known.surroundings_k)) {
             let target = effect_target("P3", component, "difference_k");
-            all.push(Unknown::plain(target, 0.0, known.surroundings_k).limited());
+            all.push(Unknown::plain(target, 0.0, known.surroundings_k).limited(true));
         }
     }
 }

@@ -74,12 +74,11 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
     for (i, accuracy) in experiment.accuracy.iter().enumerate() {
         // Only a class states limits.
         let is_classed = experiment.sensors.sensor[i].class != Class::Unknown;
-        let of_class = |unknown: Unknown| if is_classed { unknown.limited() } else { unknown };
         if accuracy.bias > 0.0 {
-            all.push(of_class(Unknown::plain(Target::Bias(i), 0.0, accuracy.bias)));
+            all.push(Unknown::plain(Target::Bias(i), 0.0, accuracy.bias).limited(is_classed));
         }
         if accuracy.gain > 0.0 {
-            all.push(of_class(Unknown::plain(Target::Gain(i), 1.0, accuracy.gain)));
+            all.push(Unknown::plain(Target::Gain(i), 1.0, accuracy.gain).limited(is_classed));
         }
         if experiment.sensors.sensor[i].role == Role::Compare {
             all.push(Unknown::plain(Target::Clock(i), 0.0, moment_s(experiment, i)));

@@ -29,8 +29,7 @@ pub(super) fn tolerances(experiment: &Experiment, all: &mut Vec<Unknown>) {
         let mut add = |id: &'static str, field: &'static str, sd: f64, declared: Option<f64>| {
             if !has(experiment, id, component) {
                 let factor = Unknown::plain(effect_target(id, component, field), 0.0, sd);
-                let factor = if declared.is_some() { factor.limited() } else { factor };
-                all.push(Unknown { logarithmic: true, ..factor });
+                all.push(Unknown { logarithmic: true, ..factor.limited(declared.is_some()) });
             }
         };
         if kind == "storage" && warm {
