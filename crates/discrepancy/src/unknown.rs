@@ -98,7 +98,7 @@ pub struct Unknown {
 }
 
 /// Half of a range of limits over its standard deviation.
-const ROOT3: f64 = 1.732_050_807_568_877_2;
+pub(crate) const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// What is left within limits of the pull of a normal distribution to its middle, that what data do not say has a value at all.
 const PULL: f64 = 0.1;
 /// How far beyond its limits a quantity may be, standard deviations of its range: a fifth of the half of it.

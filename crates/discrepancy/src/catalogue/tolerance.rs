@@ -4,10 +4,10 @@
 //! logarithm of a factor, `ln(1 + h)/root 3`.
 
 use crate::experiment::Experiment;
+use crate::unknown::ROOT3;
 use anergy_prosumer::equipment::storage::StorageParams;
 use anergy_simulation::model_file::ToleranceEntry;
 
-const ROOT3: f64 = 1.732_050_807_568_877_2;
 /// Water in layers is 0.1 to 0.2 K off after some charges, without an error of sensor or model, in cases of development: as a
 /// standard deviation of what a storage seems to lose in a record.
 const LAYERS_K: f64 = 0.06;
