@@ -27,6 +27,8 @@ STRATA = {"hard": (6, 14), "medium": (17, 55), "easy": (80, 4000)}
 SMALLEST, SMALLEST_ZERO = {"S3": 0.6}, 0.3
 # A drift or a jump is at least so many times the largest permissible error: within its class a sensor may drift.
 BEYOND_CLASS = 1.25
+# Share of a reading that is small but visible.
+SLIGHT = 0.005
 # Nats within which two effects are not told apart, and cosine of their signatures.
 TOGETHER, PARALLEL = 3.0, 0.99
 
@@ -42,28 +44,32 @@ class Draw:
         self.at_s = np.arange(0, module.duration_s(self.rig), self.rig["every_s"])
         self.neutral = module.neutral(self.rig)
         self.plant = list(module.effects(self.rig))
-        inputs = [s for s in self.sensors if s.role == "input" and s.truth in module.INPUTS]
         # What is drawn, and what the model declares beside it.
         tolerances = list(module.tolerances(self.rig).items()) + list(module.declared(self.rig).items())
         plain = module.simulate(self.rig, [self.neutral])
+        # What never does anything is as it is read.
+        inputs = [s for s in self.sensors if s.role == "input" and s.truth in module.INPUTS and plain[s.truth].any()]
         # An offset and a gain of each input that are small but visible.
-        offset = {s.truth: 0.5 if s.kind == "k" else 0.02 * np.mean(plain[s.truth]) for s in inputs}
+        offset = {s.truth: 0.5 if s.kind == "k" else SLIGHT * np.mean(plain[s.truth]) for s in inputs}
         variants = [{}] + [{k: self.neutral[k] + half} for k, half in tolerances]
-        variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((offset[s.truth], 1.0), (0.0, 1.02))]
+        variants += [module.INPUTS[s.truth](self.neutral, *error) for s in inputs for error in ((offset[s.truth], 1.0), (0.0, 1 + SLIGHT))]
         variants += [variant(look) for _, _, _, variant, look, _, _ in self.plant]
         channels = module.simulate(self.rig, [self.neutral | v for v in variants])
         look = self.look = Look(self.sensors, channels, self.at_s, fitted(module.split(self.rig), self.at_s))
         # Readings may lie anywhere on their inputs.
         moments = [share * self.rig["every_s"] for share in (0, 1 / 3, 2 / 3)]
-        look.unread([module.simulate(self.rig | {"as_read_s": at_s}, [self.neutral]) for at_s in moments])
+        plants = [self.neutral] + [self.neutral | variant(first) for _, _, _, variant, first, _, _ in self.plant]
+        unread = [module.simulate(self.rig | {"as_read_s": at_s}, plants) for at_s in moments]
+        look.unread(unread)
         for j, s in enumerate(inputs):
             _, _, noise = s.limits(channels[s.truth][0])
             first = 1 + len(tolerances) + 2 * j
             if s.kind == "k":
                 look.noisier(look.of(channels, first) / offset[s.truth], np.hypot(noise, s.resolution_si() / 12**0.5))
             else:
-                mean = np.mean(channels[s.truth][0])
-                look.noisier(look.of(channels, first + 1) / 0.02, np.hypot(noise, s.resolution_si() / 12**0.5) / mean)
+                on = channels[s.truth][0]
+                mean = np.mean(on[on != 0.0])
+                look.noisier(look.of(channels, first + 1) / SLIGHT, np.hypot(noise, s.resolution_si() / 12**0.5) / mean)
         k = 1
         for _ in tolerances:
             look.tolerate(look.of(channels, k), 1 / ROOT3)
@@ -71,7 +77,7 @@ class Draw:
         self.effects = []  # id, component, parameter, neutral, first look, range, variant or None, signature
         for s in inputs:
             bias, gain, _ = s.limits(channels[s.truth][0])
-            by_bias, by_gain = -look.of(channels, k) / offset[s.truth], -look.of(channels, k + 1) / 0.02
+            by_bias, by_gain = -look.of(channels, k) / offset[s.truth], -look.of(channels, k + 1) / SLIGHT
             k += 2
             look.tolerate(by_bias, bias / ROOT3)
             look.tolerate(by_gain, gain / ROOT3)
@@ -80,7 +86,7 @@ class Draw:
                 if module.FLOWS_THROUGH:  # what enters leaves within minutes: a slow change shows as an offset of that moment does
                     for parameter, shape in self.shapes():
                         self.effects.append(("S3", s.column, parameter, 0.0, 1.0, (-5, 5), None, by_bias * np.tile(shape, len(look.sensors))))
-            else:
+            elif s.kind != "1":
                 self.effects.append(("S2", s.column, "gain", 1.0, 1.05, (0.8, 1.2), None, 0.05 * by_gain))
                 self.effects.append(self.zero_of(s, channels, by_bias))
         for s in look.sensors:
@@ -101,9 +107,14 @@ class Draw:
                     self.effects.append(self.zero_of(s, channels, one))
             self.effects.append(("S4", s.column, "lag_s", 0.0, 30.0, (2, 180), None, look.of_sensor(s, slow(30.0))))
             self.effects.append(("S7", s.column, "clock_s", 0.0, 30.0, (-60, 60), None, look.of_sensor(s, shifted(30.0))))
+        # How much further readings are off with each effect of the plant than without, as nobody knows what inputs do between two of theirs.
+        self.unread_with = {}
         for id_, component, parameter, variant, first, range_, zero in self.plant:
             self.effects.append((id_, component, parameter, zero, first, range_, variant, look.of(channels, k)))
+            self.unread_with[id_, component] = look.off(unread, len(self.unread_with) + 1, channels, k) - look.between
             k += 1
+        # Meters that read no flow as none whatever their offset takes away.
+        self.unsigned = {s.column for s in look.sensors if s.kind in ("kg_s", "m3_s") and not s.signed}
         look.ready()
 
     def shapes(self):
@@ -147,7 +158,7 @@ class Draw:
         return float(np.hypot(np.hypot(0.2 * sensor.lag_s, UNKNOWN_LAG_S), before_s))
 
     def gain(self, effect, value):
-        gain = self.look.gain(self.seen(effect, value))
+        gain = self.look.gain(self.seen(effect, value), (value - effect[3]) / (effect[4] - effect[3]) * self.unread_with.get(effect[:2], 0.0))
         # A clock is always off by up to an interval, a lag by what nobody knows of it, and fronts are no straight lines.
         if effect[0] not in ("S4", "S7"):
             return gain
@@ -159,6 +170,8 @@ class Draw:
 
     def seen(self, effect, value):
         """What it shows at this value."""
+        if effect[0] == "S8" and effect[1] in self.unsigned:
+            return self.look.of_sensor(self.sensor(effect[1]), lambda y: np.maximum(np.maximum(y, 0) + value, 0) - np.maximum(y, 0) + y)
         if effect[0] in ("S4", "S7"):
             sensor = self.sensor(effect[1])
             return self.look.of_sensor(sensor, slow(value) if effect[0] == "S4" else shifted(value))

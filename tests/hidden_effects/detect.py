@@ -51,9 +51,18 @@ class Look:
 
     def unread(self, others):
         """Noise of what inputs do between two readings: what the plant does where it is driven by what is read of them, at several moments."""
-        squares = np.mean([self.of(channels, 0) ** 2 for channels in others], axis=0).reshape(len(self.sensors), -1)
+        self.between = self.off(others, 0, self.channels, 0)
+        self.noisier(self.around(self.between) / self.sigma, 1.0)
+
+    def off(self, others, j, channels, k):
+        """How far readings of variant j of each of others are from those of variant k of channels."""
+        return np.array([self.readings(other, j) - self.readings(channels, k) for other in others])
+
+    def around(self, off):
+        """Root mean square of such differences over neighbouring samples too."""
+        squares = np.mean(off**2, axis=0).reshape(len(self.sensors), -1)
         beside = np.pad(squares, ((0, 0), (1, 1)), mode="edge")
-        self.noisier(np.sqrt((beside[:, :-2] + beside[:, 1:-1] + beside[:, 2:]) / 3).ravel(), 1.0)
+        return np.sqrt((beside[:, :-2] + beside[:, 1:-1] + beside[:, 2:]) / 3).ravel()
 
     def of(self, channels, k):
         """Signature of variant k."""
@@ -80,8 +89,13 @@ class Look:
     def inner(self, a, b):
         return a @ b - (a @ self.g) @ self.inverse @ (self.g.T @ b)
 
-    def gain(self, r):
-        return 0.5 * self.inner(r, r)
+    def gain(self, r, further=0.0):
+        """Expected gain; `further` is how much further readings are off with the effect than without it (`off`)."""
+        more = self.around(self.between + further) ** 2 - self.around(self.between) ** 2
+        w = 1.0 / np.sqrt(1.0 + np.maximum(more, 0.0) / self.sigma**2)
+        r, g = r * w, self.g * w[:, None]
+        across = g.T @ r
+        return 0.5 * (r @ r - across @ np.linalg.solve(np.eye(g.shape[1]) + g.T @ g, across))
 
     def untouched(self, r):
         """Sensors that hardly see it: below a twentieth of their noise on average."""
