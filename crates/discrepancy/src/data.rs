@@ -174,7 +174,14 @@ pub fn read(text: &str, sensors: &SensorFile) -> Result<Vec<Run>, ExplainError> 
     }
     if let Some((sensor, run)) = without_readings(&runs, sensors) {
         let (column, name) = (&sensor.column, &run.name);
-        return Err(wrong(format!("column \"{column}\" of run \"{name}\" is empty")));
+        let hint = match sensor.role {
+            Role::Input => format!(
+                ": what drives {} there is missing; another column of this signal would do",
+                sensor.signal
+            ),
+            Role::Compare => String::new(),
+        };
+        return Err(wrong(format!("column \"{column}\" of run \"{name}\" is empty{hint}")));
     }
     Ok(runs)
 }
@@ -341,7 +348,10 @@ mod tests {
         assert!(rows(&inputs, &with_v(exchanged)).is_ok());
         let of_two = inputs.replacen("b.t_k", "c.t_k", 1);
         let refused = rows(&of_two, &with_v(exchanged)).unwrap_err();
-        assert!(refused.contains("column \"U\" of run \"a\" is empty"), "{refused}");
+        assert!(
+            refused.contains("column \"U\" of run \"a\" is empty: what drives b.t_k"),
+            "{refused}"
+        );
         let never = rows(&sensors, "time_s,T,U\n0,20,\n10,21,\n").unwrap_err();
         assert!(never.contains("\"U\""), "{never}");
     }

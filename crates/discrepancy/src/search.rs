@@ -21,6 +21,7 @@ use crate::unknown::Unknown;
 use nalgebra::DVector;
 pub(crate) use settled::Settled;
 use std::collections::HashSet;
+pub(crate) use wins::TOGETHER;
 use wins::{STRAINS, WINS, adds, together};
 
 /// The likelihood is taken to the power of one over this ...

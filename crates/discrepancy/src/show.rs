@@ -9,6 +9,7 @@ use crate::explain::{Explanation, Finding, Verdict};
 use crate::find::Found;
 use crate::gap::Gap;
 use crate::next::{AGAIN, Addition};
+use crate::search::TOGETHER;
 use crate::significance::State;
 use crate::split::Use;
 use serde_json::{Map, Value, json};
@@ -132,8 +133,13 @@ fn where_and_when(out: &mut String, found: &Found) {
     }
 }
 
-/// What is expected of an addition to the measurement.
-pub(crate) const EXPECTED: &str = "Simulated with every member at its fitted values: evidence by which the first one is expected to be told from the others if it is true, or they from it if they are, nats. From 3 on they are told apart.";
+/// What is expected of additions to the measurement, of which this is the most telling one.
+pub(crate) fn expected(best: &Addition) -> String {
+    let none = if best.nats < TOGETHER { ", which is expected of none of these" } else { "" };
+    format!(
+        "Simulated with every member at its fitted values: evidence by which the first one is expected to be told from the others if it is true, or they from it if they are, nats. From {TOGETHER:.0} on they are told apart{none}."
+    )
+}
 /// Additions that are shown.
 const SHOWN: usize = 8;
 
@@ -144,11 +150,10 @@ fn shown_additions(explanation: &Explanation) -> impl Iterator<Item = &Addition>
 }
 
 fn next_measurements(out: &mut String, explanation: &Explanation) {
-    if explanation.additions.is_empty() {
-        return;
-    }
-    let _ = write!(out, "\n### The next measurement\n\n{EXPECTED}\n\n| measurement | nats |");
-    let rivals = &explanation.additions[0].from;
+    let Some(first) = explanation.additions.first() else { return };
+    let expected = expected(first);
+    let _ = write!(out, "\n### The next measurement\n\n{expected}\n\n| measurement | nats |");
+    let rivals = &first.from;
     for (name, _) in rivals {
         let _ = write!(out, " from {name} |");
     }
@@ -282,5 +287,12 @@ mod tests {
     fn numbers_for_people() {
         assert_eq!(digits(2689.66), "2690");
         assert_eq!(digits(0.012_345), "0.01235");
+    }
+
+    #[test]
+    fn what_is_not_enough_is_said() {
+        let of = |nats| expected(&Addition { what: AGAIN.into(), nats, from: Vec::new() });
+        assert!(of(3.1).ends_with("From 3 on they are told apart."));
+        assert!(of(2.9).ends_with("told apart, which is expected of none of these."));
     }
 }

@@ -21,7 +21,7 @@ const SURELY: f64 = 5.0;
 /// The least reduction of the error on samples that were not fitted.
 const REDUCTION: f64 = 0.02;
 /// Evidence within which two effects are not told apart, nats ...
-pub(super) const TOGETHER: f64 = 3.0;
+pub(crate) const TOGETHER: f64 = 3.0;
 /// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
 const NEARLY: f64 = 0.15;
 

@@ -1,6 +1,6 @@
 //! `report.html`: one file with figures.
 
-use super::{EXPECTED, map, shown_additions, times, upper, value};
+use super::{expected, map, shown_additions, times, upper, value};
 use crate::experiment::Experiment;
 use crate::explain::{Explanation, Finding};
 use crate::split::Use;
@@ -107,8 +107,9 @@ fn next_measurements(out: &mut String, explanation: &Explanation) {
     };
     let names = ["measurement".to_owned(), "nats".to_owned()].into_iter();
     let head = cells("th", &mut names.chain(first.from.iter().map(|(n, _)| format!("from {n}"))));
+    let expected = expected(first);
     let _ =
-        writeln!(out, "<h3>The next measurement</h3>\n<p>{EXPECTED}</p>\n<table><tr>{head}</tr>");
+        writeln!(out, "<h3>The next measurement</h3>\n<p>{expected}</p>\n<table><tr>{head}</tr>");
     for addition in shown_additions(explanation) {
         let all = std::iter::once(addition.nats).chain(addition.from.iter().map(|(_, x)| *x));
         let numbers = all.map(|nats| format!("{nats:.1}"));
