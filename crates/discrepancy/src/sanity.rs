@@ -2,7 +2,7 @@
 
 use crate::data::{Run, Track};
 use crate::experiment::Experiment;
-use crate::sensors::Role;
+use crate::sensors::{Role, Sensor};
 use crate::unknown::{Target, Unknown};
 
 mod clocks;
@@ -39,6 +39,16 @@ const FACTORS: &[(f64, &str)] = &[
     (1.0 / 3600.0, "a factor of 1/3600 (seconds and hours)"),
     (-1.0, "the sign"),
 ];
+/// Factors by which those of shares are confused: commands, modulations.
+const SHARES: &[(f64, &str)] = &[
+    (100.0, "a factor of 100 (a share and percent)"),
+    (0.01, "a factor of 1/100 (percent and a share)"),
+];
+
+/// Factors by which the unit of a sensor may be confused.
+fn factors(sensor: &Sensor) -> &'static [(f64, &'static str)] {
+    if ["1", ""].contains(&sensor.si().as_str()) { SHARES } else { FACTORS }
+}
 
 /// What is wrong with the data by themselves.
 pub fn of_data(experiment: &Experiment) -> Vec<String> {
@@ -129,7 +139,7 @@ pub fn beside(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> Vec<S
         }
         let ratio = products / squares;
         let alike = products.powi(2) / (squares * total) > 0.9;
-        for (factor, words) in FACTORS {
+        for (factor, words) in factors(sensor) {
             if alike && (ratio / factor - 1.0).abs() < NEAR_FACTOR {
                 let column = &sensor.column;
                 problems.push(format!(
@@ -161,7 +171,7 @@ pub fn keeps_from_running(experiment: &Experiment) -> Vec<String> {
             let readings = experiment.readings(&gain, &[*factor]);
             readings.is_ok_and(|y| exchanged::misfit(experiment, &y) < RUNS)
         };
-        if let Some((_, words)) = FACTORS.iter().find(runs) {
+        if let Some((_, words)) = factors(sensor).iter().find(runs) {
             let column = &sensor.column;
             problems.push(format!(
                 "the model does not run with column \"{column}\" as it is, and fits with {words}: check its unit"
@@ -190,7 +200,7 @@ fn units_of_inputs(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> 
         let other = |(factor, _): &&(f64, &str)| {
             experiment.readings(&gain, &[*factor]).is_ok_and(|y| misfit(&y) < FAR_BETTER * as_is)
         };
-        if let Some((_, words)) = FACTORS.iter().find(other) {
+        if let Some((_, words)) = factors(sensor).iter().find(other) {
             let column = &sensor.column;
             problems
                 .push(format!("column \"{column}\" fits far better with {words}: check its unit"));
@@ -201,4 +211,25 @@ fn units_of_inputs(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> 
 
 fn of_run(run: &Run) -> String {
     if run.name.is_empty() { String::new() } else { format!(" of run \"{}\"", run.name) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensors::SensorFile;
+
+    #[test]
+    fn a_command_is_in_no_litres() {
+        let of = |unit: &str| {
+            let text = format!(
+                "[[sensor]]\ncolumn = \"x\"\nsignal = \"p.x\"\nunit = \"{unit}\"\nrole = \"compare\"\n"
+            );
+            let sensors = SensorFile::from_toml(&text).unwrap();
+            factors(&sensors.sensor[0]).iter().map(|(factor, _)| *factor).collect::<Vec<f64>>()
+        };
+        // A weak pump was told to have a speed in l/s.
+        assert_eq!(of("1"), [100.0, 0.01]);
+        assert_eq!(of("percent"), [100.0, 0.01]);
+        assert!(of("l_h").contains(&(1.0 / 3.6)));
+    }
 }
