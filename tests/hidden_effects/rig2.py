@@ -5,7 +5,7 @@
 import numpy as np
 
 import house
-from sensors import SPARE_S, Sensor, as_read, held
+from sensors import SPARE_S, Sensor, as_read, commanded, held
 
 NAME = "R2"
 BLOCK_S, BLOCKS = 900.0, 12
@@ -35,11 +35,7 @@ def _flow(p, bias, gain, as_is=False):
     return p | {"flow": p["flow"] * gain, "flow_zero": p["flow_zero"] + bias}
 
 
-def _read_as(command):
-    return lambda p, bias, gain, as_is=False: p | {command: p[command] * gain}
-
-
-INPUTS = {"t_ret": _warmer, "flow": _flow} | {command: _read_as(command) for command in ("load_a", "load_b")}
+INPUTS = {"t_ret": _warmer, "flow": _flow} | {command: commanded(command) for command in ("load_a", "load_b")}
 
 
 def duration_s(rig):
@@ -97,8 +93,7 @@ PUMP = TANK + ["heat", "flow_hp", "good", "part", "slow", "ice_w", "aux", "air",
 
 def neutral(rig):
     p = {"volume": 1.0, "ua": 1.0, "around_k": 0.0, "conductivity": 1.0, "mixing": 1.0, "depth": 0.0, "jet": 0.0, "return_k": 0.0, "flow": 1.0, "flow_zero": 0.0,
-         "heater_w": 0.0, "tap": 0.0, "short": 0.0, "air_in": 0.0,
-         "load_a": 1.0, "load_b": 1.0}
+         "heater_w": 0.0, "tap": 0.0, "short": 0.0, "air_in": 0.0, "load_a": 1.0, "load_b": 1.0}
     if rig["pump"]:
         return p | {"heat": 1.0, "good": 1.0, "part": 1.0, "slow": 1.0, "ice_w": 0.0, "aux": 1.0}
     return p | {"heat_a": 1.0, "heat_b": 1.0, "good_a": 1.0, "good_b": 1.0, "part_a": 1.0, "part_b": 1.0, "slow_a": 1.0, "slow_b": 1.0, "opening": 0.0, "suction": 0.0}

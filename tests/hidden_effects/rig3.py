@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from pipe import Pipe
-from sensors import SPARE_S, TEMPERATURE, Sensor, as_read, longer_s, otherwise
+from sensors import SPARE_S, TEMPERATURE, Sensor, as_read, commanded, longer_s, otherwise
 
 NAME = "R3"
 BLOCK_S, BLOCKS = 300.0, 12
@@ -32,12 +32,8 @@ def _warmer(key):
     return change
 
 
-def _read_as(command):
-    return lambda p, bias, gain, as_is=False: p | {command: p[command] * gain}
-
-
 COMMANDS = ("n1", "n2", "kappa")
-INPUTS = {"t1": _warmer("t1_k"), "t2": _warmer("t2_k")} | {command: _read_as(command) for command in COMMANDS}
+INPUTS = {"t1": _warmer("t1_k"), "t2": _warmer("t2_k")} | {command: commanded(command) for command in COMMANDS}
 
 
 def duration_s(rig):
@@ -221,6 +217,7 @@ def tolerances(rig):
 def declared(rig):
     """What is uncertain beside what is drawn: the model's formula of friction is right to 1 to 2 %, a heat loss at rest to 12 %, heads to 0.5 %."""
     p = {f"{pipe['name']}.{key}": half for pipe in rig["pipes"] for key, half in (("friction", 0.01), ("standstill", 0.12))}
+    # With the 0.2 % that are drawn 0.5 %: (0.5^2 - 0.2^2)^0.5.
     return p | {"head1": 0.0046, "head2": 0.0046}
 
 

@@ -94,6 +94,11 @@ def as_read(rig, y):
     return np.interp(t, at_s, np.interp(at_s, t, y))
 
 
+def commanded(key):
+    """The plant as a command is read: the gain of its reading on its own factor."""
+    return lambda p, bias, gain, as_is=False: p | {key: p[key] * gain}
+
+
 def held(rig, y):
     """The same of a command, which is one or the other: that of the nearest reading."""
     if "as_read_s" not in rig:
