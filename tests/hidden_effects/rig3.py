@@ -133,7 +133,7 @@ def simulate(rig, variants):
     heater = {k: of(f"{k}.heater_w") for k in pipes}
     t_k, head, kv, extra = {i: of(f"t{i}_k") for i in (1, 2)}, {i: of(f"head{i}") * rig["head"] * 100 for i in (1, 2)}, of("kv"), of("extra1")
     around_k, drift_k = of("around_k"), of("drift_k")
-    as_read = {command: of(command) for command in COMMANDS}
+    gain = {command: of(command) for command in COMMANDS}
     rho = 985.0
     out = {c: np.empty((count, n)) for c in ("m1", "m2", "m3", "j1.t", "j2.t", "j3.t", "stub1.dp", "line12.dp", "stub2.dp", "line23.dp")}
     per_kg = {k: np.full(count, 1e4) for k in pipes}  # Pa/(kg/s)^2
@@ -144,10 +144,10 @@ def simulate(rig, variants):
     outlet, open_, leak = 1.5e5, {k: 1e-5 + of(f"open{k}") for k in (1, 2)}, of("leak")
     for second in range(-300, n):
         i = max(second, 0)
-        valve = 1e5 * (3600 / (rho * rig["kvs"] * kv * as_read["kappa"] * inputs["kappa"][i])) ** 2 * rho / 1000
+        valve = 1e5 * (3600 / (rho * rig["kvs"] * kv * gain["kappa"] * inputs["kappa"][i])) ** 2 * rho / 1000
         common = per_kg["line23"] + valve
         own = {1: pump[1] + per_kg["stub1"] + per_kg["line12"] + extra * (second > 1500), 2: pump[2] + per_kg["stub2"]}
-        heads = {k: head[k] * (as_read[f"n{k}"] * inputs[f"n{k}"][i]) ** 2 for k in (1, 2)}
+        heads = {k: head[k] * (gain[f"n{k}"] * inputs[f"n{k}"][i]) ** 2 for k in (1, 2)}
         m1, m2, total = flows_of(heads[1], heads[2], own[1], own[2], common, check, open_[1], open_[2], leak, outlet)
         flows = {"stub1": m1, "line12": m1, "stub2": m2, "line23": total}
         around = rig["around"] + around_k + drift_k * np.sin(2 * np.pi * i / 4000)
