@@ -12,6 +12,7 @@ mod tolerance;
 mod units;
 
 pub(crate) use seen::Use;
+pub(crate) use sensors::LAG_S;
 
 use crate::experiment::Experiment;
 use crate::unknown::{Target, Unknown};

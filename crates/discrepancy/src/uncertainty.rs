@@ -3,7 +3,8 @@
 //! **Equation** `sigma^2 = noise^2 + lsb^2/12 + (jitter dy/dt)^2 + sigma_num^2 + sigma_in^2 + sigma_0^2`. `sigma_num` is the
 //! difference to half the step, and what storages of three times as many layers show of the error of the grid. `sigma_in` is what noise, resolution and jitter of the measured inputs, and what they did in
 //! their gaps, make of the reading: the mean square over `DRAWS` simulations with inputs drawn anew (the Monte Carlo method
-//! of GUM supplement 1; between two readings nearly as far from the straight line as those beside it are from theirs), and at least what commands that
+//! of GUM supplement 1; between two readings nearly as far from the straight line as those beside it are from theirs; commands and flows
+//! read late by a lag that nobody knows), and at least what their noise alone makes of it in as many, and what commands that
 //! are switched as early or as late as they may be make of it, over root 3; smoothed over neighbouring samples. `sigma_0` is what the temperature of the water at
 //! the start makes of it, by as much as the first readings differ beyond what the sensors' classes allow (their middle is an
 //! unknown of the fit).
@@ -13,6 +14,7 @@
 //!
 //! Offsets and gains of sensors are not in sigma: they are the same in all samples, and fitted.
 
+use crate::catalogue::LAG_S;
 use crate::data::Track;
 use crate::experiment::{Experiment, Sample, Simulated};
 use crate::grid;
@@ -58,7 +60,8 @@ pub(crate) fn jitter_s(track: &Track) -> f64 {
 pub struct Uncertainties {
     /// In all.
     pub sigma: Vec<f64>,
-    /// Of it what is known well: the noise of the sensor and the moments of switches. (The rest was predicted from a few simulations.)
+    /// Of it what is known well: the noise of the sensor and of the inputs, and the moments of switches. (The rest is a guess of what inputs
+    /// do between their readings.)
     pub known: Vec<f64>,
 }
 
@@ -70,6 +73,8 @@ pub struct Spread {
     others: [Option<Simulated>; 5],
     /// With inputs drawn anew.
     draws: Vec<Simulated>,
+    /// With no more than the noise of the inputs drawn anew.
+    noisy: Vec<Simulated>,
 }
 
 impl Spread {
@@ -89,17 +94,18 @@ impl Spread {
         };
         let plain = |other: Experiment| other.simulated(&[], &[], 1).ok();
         // What was drawn and does not run is not what was.
-        let all = on_all_cores(DRAWS + 5, |k| match k {
+        let all = on_all_cores(5 + 2 * DRAWS, |k| match k {
             0 => experiment.simulated(&[], &[], 2).ok(),
             1 => started(1.0).or_else(|_| started(-1.0)).ok(),
             2 => grid::finer(experiment).and_then(plain),
             3 => switched_at(experiment, -LATEST).and_then(plain),
             4 => switched_at(experiment, LATEST).and_then(plain),
-            _ => plain(drawn(experiment, k as u64)),
+            _ => plain(drawn(experiment, k as u64, k >= 5 + DRAWS)),
         });
         let mut all = all.into_iter();
         let others = [(); 5].map(|()| all.next().flatten());
-        Self { model, others, draws: all.flatten().collect() }
+        let draws = all.by_ref().take(DRAWS).flatten().collect();
+        Self { model, others, draws, noisy: all.flatten().collect() }
     }
 
     /// Standard deviations of all samples as these flaws of their sensors show what might have been: a slow one keeps for a
@@ -108,30 +114,38 @@ impl Spread {
         let observed = |simulated: &Simulated| experiment.observed(simulated, unknowns, at);
         let readings = observed(&self.model);
         let others = self.others.each_ref().map(|other| other.as_ref().map(observed));
-        let draws: Vec<Vec<f64>> = self.draws.iter().map(observed).collect();
-        uncertainties(experiment, &readings, &others, &draws)
+        let [draws, noisy] = [&self.draws, &self.noisy].map(|all| {
+            let all: Vec<Vec<f64>> = all.iter().map(observed).collect();
+            mean_squares(&all, &readings)
+        });
+        uncertainties(experiment, &readings, &others, &draws, &noisy)
     }
 }
 
-/// Standard deviations of all samples from readings of the model as it is, and as it might have been (see [`Spread`]).
+/// Mean squares of how far these draws lie from the readings.
+fn mean_squares(draws: &[Vec<f64>], readings: &[f64]) -> Vec<f64> {
+    let of = |(i, y): (usize, &f64)| draws.iter().map(|draw| (draw[i] - y).powi(2)).sum::<f64>();
+    readings.iter().enumerate().map(of).map(|sum| sum / draws.len().max(1) as f64).collect()
+}
+
+/// Standard deviations of all samples from readings of the model as it is, and as it might have been (see [`Spread`]): mean squares with the
+/// inputs drawn anew, and with their noise alone.
 fn uncertainties(
     experiment: &Experiment,
     readings: &[f64],
     [finer, start, layers, early, late]: &[Option<Vec<f64>>; 5],
-    draws: &[Vec<f64>],
+    draws: &[f64],
+    noisy: &[f64],
 ) -> Uncertainties {
     let away = |other: &Option<Vec<f64>>, i: usize| {
         other.as_ref().map_or(0.0, |other| other[i] - readings[i])
     };
     // The moment of a switch: equally distributed between its earliest and its latest.
     let switched = |i: usize| away(early, i).powi(2).max(away(late, i).powi(2)) / 3.0;
-    let drawn = |i: usize| {
-        let squares = draws.iter().map(|draw| (draw[i] - readings[i]).powi(2));
-        squares.sum::<f64>() / draws.len().max(1) as f64
-    };
-    let switched: Vec<f64> = (0..readings.len()).map(switched).collect();
+    let known: Vec<f64> = (0..readings.len()).map(|i| noisy[i].max(switched(i))).collect();
     // Few draws may miss it.
-    let squares: Vec<f64> = (0..readings.len()).map(|i| drawn(i).max(switched[i])).collect();
+    let squares: Vec<f64> =
+        draws.iter().zip(&known).map(|(drawn, known)| drawn.max(*known)).collect();
     let samples = &experiment.samples;
     let unknown_mixing = grid::unknown_share(experiment);
     let jitters: Vec<Vec<f64>> =
@@ -146,40 +160,45 @@ fn uncertainties(
             if dt_s > 0.0 { (samples[after].value - samples[before].value) / dt_s } else { 0.0 };
         let moved = rate * jitters[sample.run][sample.sensor];
         let beside = (i.saturating_sub(BESIDE)..=i + BESIDE).filter(same);
-        let (sum, of_switches, count) = beside.fold((0.0, 0.0, 0.0), |(sum, of, count), j| {
-            (sum + squares[j], of + switched[j], count + 1.0)
+        let (sum, of_known, count) = beside.fold((0.0, 0.0, 0.0), |(sum, of, count), j| {
+            (sum + squares[j], of + known[j], count + 1.0)
         });
         let noise = experiment.accuracy[sample.sensor].noise;
         let layers = unknown_mixing * grid::WHOLE * away(layers, i);
         let rest = away(finer, i).powi(2) + away(start, i).powi(2) + layers * layers;
         let all = noise * noise + moved * moved + rest + sum / count;
-        (all.sqrt(), (noise * noise + of_switches / count).sqrt())
+        (all.sqrt(), (noise * noise + of_known / count).sqrt())
     };
     let (sigma, known) = samples.iter().enumerate().map(of).unzip();
     Uncertainties { sigma, known }
 }
 
-/// The experiment with inputs as they might have been.
-fn drawn(experiment: &Experiment, draw: u64) -> Experiment {
+/// The experiment with inputs as they might have been, or with their noise alone.
+fn drawn(experiment: &Experiment, draw: u64, only_noise: bool) -> Experiment {
     let mut random = Pcg32::new(SEED, draw);
     let mut other = experiment.clone();
-    for run in &mut other.runs {
-        for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
-            if sensor.role == Role::Input {
-                let (track, noise) = (&run.tracks[i], experiment.accuracy[i].noise);
-                let kind = match sensor.si().as_str() {
-                    "kg_s" | "m3_s" => Kind::Flow,
-                    "1" => Kind::Command,
-                    "k" => Kind::Temperature,
-                    _ => Kind::Other,
-                };
-                let mut later = || {
+    for (i, sensor) in experiment.sensors.sensor.iter().enumerate() {
+        if sensor.role == Role::Compare {
+            continue;
+        }
+        let (noise, kind) = (experiment.accuracy[i].noise, Kind::of(sensor));
+        let late: f64 = StandardNormal.sample(&mut random);
+        for run in &mut other.runs {
+            let track = &mut run.tracks[i];
+            if only_noise {
+                *track = noisy(track, noise, kind, &mut random);
+                continue;
+            }
+            if kind.switches() {
+                *track = switched(track, kind, || {
                     let x: f64 = StandardNormal.sample(&mut random);
                     (x / 12.0_f64.sqrt()).clamp(-LATEST, LATEST)
-                };
-                let switches = [Kind::Flow, Kind::Command].contains(&kind);
-                let moved = switches.then(|| switched(track, kind, &mut later));
-                run.tracks[i] = redrawn(moved.as_ref().unwrap_or(track), noise, kind, &mut random);
+                });
+            }
+            *track = redrawn(track, noise, kind, &mut random);
+            // That of a temperature is fitted.
+            if kind != Kind::Temperature {
+                track.time_s.iter_mut().for_each(|t| *t -= LAG_S * late);
             }
         }
     }
@@ -231,6 +250,34 @@ enum Kind {
     Other,
 }
 
+impl Kind {
+    fn of(sensor: &Sensor) -> Self {
+        match sensor.si().as_str() {
+            "kg_s" | "m3_s" => Self::Flow,
+            "1" => Self::Command,
+            "k" => Self::Temperature,
+            _ => Self::Other,
+        }
+    }
+
+    /// Whether it is off at times: nothing, without noise.
+    fn switches(self) -> bool {
+        [Self::Flow, Self::Command].contains(&self)
+    }
+}
+
+/// A measured input but for its noise.
+fn noisy(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
+    let forward = kind == Kind::Flow && track.value.iter().all(|y| *y >= 0.0);
+    let mut of = |y: f64| {
+        let x: f64 = StandardNormal.sample(random);
+        let value = if kind.switches() && y == 0.0 { 0.0 } else { y + noise * x };
+        if forward { value.max(0.0) } else { value }
+    };
+    let value = track.value.iter().map(|y| of(*y)).collect();
+    Track { value, time_s: track.time_s.clone() }
+}
+
 /// A measured input as it may have been between its readings, in its gaps, and but for its noise.
 fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
     let is_flow = kind == Kind::Flow;
@@ -242,7 +289,7 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
         if is_flow && !on_its_way(y, i) { usual_s / 12.0_f64.sqrt() } else { jitter_s(track) }
     };
     let forward = y.iter().all(|y| *y >= 0.0);
-    let is_off = |k: usize| [Kind::Flow, Kind::Command].contains(&kind) && y[k] == 0.0;
+    let is_off = |k: usize| kind.switches() && y[k] == 0.0;
     // Whether a command is switched beside a reading.
     let switches = |i: usize| {
         kind == Kind::Command && (i.saturating_sub(1)..=(i + 1).min(y.len() - 1)).any(is_off)

@@ -20,7 +20,7 @@ const DROPS: f64 = 0.01;
 const FIRST_K: f64 = 0.3;
 
 /// Time constant of a sensor beyond the one that is known, s: small ones cannot be told from how a front is smeared.
-const LAG_S: f64 = 1.5;
+pub(crate) const LAG_S: f64 = 1.5;
 /// The time constant that is known is right to this share at most.
 const LAG: f64 = 0.2;
 /// Time constant beyond the one that is known, standard deviation, s; at the outlet of a generator with that of its metal and water.
