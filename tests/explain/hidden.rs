@@ -1,6 +1,6 @@
 //! `explain` on cases of the independent truth generator (`tests/hidden_effects`): a small fixed part of what
 //! `make explain-score` runs. The files are those of `cases.py --rig R1 --seed 11 --draws 2 --nulls 2`,
-//! and `cases.py fixed --rig R1 --seed 12 --sensors poor --effect S3 T_house 100`.
+//! of `cases.py fixed --rig R1 --seed 12 --sensors poor --effect S3 T_house 100`, and a pair of a fresh score.
 
 #![allow(clippy::unwrap_used)]
 
@@ -59,4 +59,16 @@ fn a_drift_of_one_of_two_sensors_is_found_but_not_which() {
     assert!(class.contains(&("S3", "T_house")) && class.iter().all(|c| c.0 == "S3"), "{class:?}");
     let drift = found.class.iter().find(|f| f.component == "T_house").unwrap().estimate;
     assert!(drift.lo < -0.62 && -0.62 < drift.hi, "{drift:?}");
+}
+
+/// A pump with 0.7 of its head is blocked by the other one, and the meter of that is slow. A speed in another unit, and another command in
+/// its place, take away much of the gap and fit nothing.
+#[test]
+fn a_blocked_pump_is_no_problem_of_the_data() {
+    let found = explained("R3-13000006-11");
+    let effects: Vec<(&str, &str)> =
+        found.effects.iter().map(|f| (f.id, f.component.as_str())).collect();
+    assert_eq!(effects, [("H3", "pump1"), ("S4", "flow_2")], "{:?}", found.because);
+    let head = found.effects[0].estimate;
+    assert!(head.lo < 0.7 && 0.7 < head.hi, "{head:?}");
 }

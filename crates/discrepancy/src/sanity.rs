@@ -23,8 +23,8 @@ const FAR_BETTER: f64 = 0.2;
 /// An input may lie outside of the range of its signal by so many standard deviations of the noise, and of offset and gain.
 const NOISES: f64 = 5.0;
 const BIASES: f64 = 3.0;
-/// Misfit ([`misfit`]) that another unit may leave where the model does not run with this one.
-const RUNS: f64 = 3.0;
+/// Misfit ([`misfit`]) that another unit may leave.
+const FITS: f64 = 3.0;
 /// Factors by which units are confused.
 const FACTORS: &[(f64, &str)] = &[
     (3.6, "a factor of 3.6 (m3/h and l/s, kWh and MJ)"),
@@ -47,7 +47,7 @@ const SHARES: &[(f64, &str)] = &[
 
 /// Factors by which the unit of a sensor may be confused.
 fn factors(sensor: &Sensor) -> &'static [(f64, &'static str)] {
-    if ["1", ""].contains(&sensor.si().as_str()) { SHARES } else { FACTORS }
+    if sensor.si() == "1" { SHARES } else { FACTORS }
 }
 
 /// What is wrong with the data by themselves.
@@ -169,7 +169,7 @@ pub fn keeps_from_running(experiment: &Experiment) -> Vec<String> {
         let gain = [Unknown::plain(Target::Gain(i), 1.0, 1.0)];
         let runs = |(factor, _): &&(f64, &str)| {
             let readings = experiment.readings(&gain, &[*factor]);
-            readings.is_ok_and(|y| exchanged::misfit(experiment, &y) < RUNS)
+            readings.is_ok_and(|y| exchanged::misfit(experiment, &y) < FITS)
         };
         if let Some((_, words)) = factors(sensor).iter().find(runs) {
             let column = &sensor.column;
@@ -197,8 +197,12 @@ fn units_of_inputs(experiment: &Experiment, readings: &[f64], sigma: &[f64]) -> 
             continue;
         }
         let gain = [Unknown::plain(Target::Gain(i), 1.0, 1.0)];
+        // A pump that does nothing in percent takes away a gap of another one, and still fits nothing.
         let other = |(factor, _): &&(f64, &str)| {
-            experiment.readings(&gain, &[*factor]).is_ok_and(|y| misfit(&y) < FAR_BETTER * as_is)
+            let fits = |y: &Vec<f64>| exchanged::misfit(experiment, y) < FITS;
+            experiment
+                .readings(&gain, &[*factor])
+                .is_ok_and(|y| misfit(&y) < FAR_BETTER * as_is && fits(&y))
         };
         if let Some((_, words)) = factors(sensor).iter().find(other) {
             let column = &sensor.column;

@@ -212,10 +212,11 @@ impl Sensor {
         self.unit.to_lowercase().replace('/', "_")
     }
 
-    /// SI suffix of the unit.
+    /// SI suffix of the unit; `1` of shares.
     pub fn si(&self) -> String {
         let suffix = self.unit_suffix();
-        Unit::find(&suffix).map_or(suffix, |unit| unit.si.to_owned())
+        let si = Unit::find(&suffix).map_or(suffix, |unit| unit.si.to_owned());
+        if si.is_empty() { "1".to_owned() } else { si }
     }
 
     /// A reading in SI.
@@ -272,6 +273,7 @@ mod tests {
                     class = \"pt100_a\"\nquantisation = 0.1\n";
         let sensor = &SensorFile::from_toml(text).unwrap().sensor[0];
         assert_eq!(sensor.si(), "k");
+        assert_eq!(Sensor { unit: "percent".into(), ..sensor.clone() }.si(), "1");
         assert_eq!(sensor.to_si(60.0), 333.15);
         // (0.15 + 0.12)/sqrt(3) = 0.1559 K at 60 degC; sqrt(1.25 0.02^2 + 0.01/12) = 0.03651 K.
         let accuracy = sensor.accuracy(333.15, 340.0);

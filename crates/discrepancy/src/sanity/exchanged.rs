@@ -10,6 +10,8 @@ use anergy_core::cores::on_all_cores;
 const SUSPECT: f64 = 1.0;
 const BETTER: f64 = 0.6;
 const LEAVES: f64 = 0.5;
+/// Misfit that an exchange of an input may leave: a pump that is driven by something else may take away the gap of another one, and fits nothing.
+const FITS: f64 = 2.0;
 /// Most exchanges of inputs that are simulated.
 const MOST: usize = 24;
 
@@ -59,7 +61,7 @@ pub(super) fn exchanged(experiment: &Experiment, readings: &[f64]) -> Vec<String
             let other = with_exchanged(experiment, suspects[k])?;
             let readings = other.readings(&[], &[]).ok()?;
             let left = mean(&self::columns(&other, &readings))?;
-            (left < LEAVES * as_is).then_some(as_is - left)
+            (left < FITS.min(LEAVES * as_is)).then_some(as_is - left)
         });
         let far = suspects.iter().zip(gains).filter_map(|(pair, gain)| Some((gain?, *pair)));
         found.extend(far.filter(|(gain, _)| *gain > BETTER));
