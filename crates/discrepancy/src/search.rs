@@ -39,7 +39,7 @@ const BEYOND: f64 = 3.0;
 /// Odds are taken to the power of one over this for a probability ...
 const WARM: f64 = 3.0;
 /// ... of which this share belongs to causes that were tried: so that in cases of development it is how often a name was right.
-const TRIED: f64 = 0.9;
+const TRIED: f64 = 0.94;
 /// Values within so many standard deviations of what is plausible are equally so.
 const PLAUSIBLE: f64 = 2.0;
 /// Sensitivities whose directions agree better than this are not told apart.
