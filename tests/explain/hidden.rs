@@ -1,6 +1,6 @@
 //! `explain` on cases of the independent truth generator (`tests/hidden_effects`): a small fixed part of what
 //! `make explain-score` runs. The files are those of `cases.py --rig R1 --seed 11 --draws 2 --nulls 2`,
-//! of `cases.py fixed --rig R1 --seed 12 --sensors poor --effect S3 T_house 100`, and a pair of a fresh score.
+//! of `cases.py fixed --rig R1 --seed 12 --sensors poor --effect S3 T_house 100`, and two of fresh scores.
 
 #![allow(clippy::unwrap_used)]
 
@@ -71,4 +71,15 @@ fn a_blocked_pump_is_no_problem_of_the_data() {
     assert_eq!(effects, [("H3", "pump1"), ("S4", "flow_2")], "{:?}", found.because);
     let head = found.effects[0].estimate;
     assert!(head.lo < 0.7 && 0.7 < head.hi, "{head:?}");
+}
+
+/// A clock that is 60 s slow: a flow in another unit would take away four fifths of it.
+#[test]
+fn a_slow_clock_is_no_unit_of_a_flow() {
+    let found = explained("R1-14000004-08");
+    let effects: Vec<(&str, &str)> =
+        found.effects.iter().map(|f| (f.id, f.component.as_str())).collect();
+    assert_eq!(effects, [("S7", "T_house")], "{:?}", found.because);
+    let clock = found.effects[0].estimate;
+    assert!(clock.lo < 59.95 && 59.95 < clock.hi, "{clock:?}");
 }

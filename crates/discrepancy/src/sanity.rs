@@ -19,7 +19,7 @@ const HOTTEST_K: f64 = 480.0;
 /// A unit is confused where the ratio of reading and simulation is this near a factor of units, relative.
 const NEAR_FACTOR: f64 = 0.05;
 /// Another unit must reduce the squared residuals to this share.
-const FAR_BETTER: f64 = 0.2;
+const FAR_BETTER: f64 = 0.1;
 /// An input may lie outside of the range of its signal by so many standard deviations of the noise, and of offset and gain.
 const NOISES: f64 = 5.0;
 const BIASES: f64 = 3.0;
