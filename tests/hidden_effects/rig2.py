@@ -15,7 +15,7 @@ FLOWS_THROUGH = False  # without storages
 AS_BUILT = set()
 ONE_SIDED = {"T3", "T4", "G4", "H1", "H2", "S4"}
 # So much an effect is at least: less is the tolerance of another unit of the same kind.
-SMALLEST = {"T1": 0.3, "T2": 0.7, "T3": 0.06, "T4": 0.06, "G1": 0.03, "G2": 0.05, "G3": 0.2, "G6": 0.03}
+SMALLEST = {"T1": 0.3, "T2": 0.7, "T3": 0.06, "T4": 0.1, "G1": 0.03, "G2": 0.05, "G3": 0.2, "G6": 0.03}
 LAYERS = 60  # of the model
 OUTLET_LAG_S = {True: 5, False: 20}  # of the water and metal of a heat pump, of a boiler: what the model declares
 DENSITY = house.DENSITY

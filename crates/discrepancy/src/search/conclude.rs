@@ -1,6 +1,8 @@
 //! The verdict of the first round, and what the last one may make of it.
 
-use super::wins::{BEHIND, EVEN, MOST_OF_IT, foretells, surely_foretells, together, wins};
+use super::wins::{
+    BEHIND, EVEN, EXPECTED, MOST_OF_IT, TOGETHER, foretells, surely_foretells, together, wins,
+};
 use super::{
     BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
     TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
@@ -19,7 +21,7 @@ impl Search<'_> {
         let class = class(&round.findings, &parallel, round.null_z);
         let class = with_rivals(class, &round.findings, round.null_z);
         let by_chance = probability(&class) <= EVEN && !is_discrepancy(round.null_z, worst);
-        if by_chance { Vec::new() } else { with_others(class, &round.findings) }
+        if by_chance { Vec::new() } else { ordered(with_others(class, &round.findings)) }
     }
 
     /// The verdict of the first round.
@@ -108,6 +110,22 @@ fn with_rivals(class: Vec<Finding>, findings: &[Finding], null_z: f64) -> Vec<Fi
     let rivals: Vec<Finding> = findings.iter().filter(wins).cloned().collect();
     let is_split = probability(&class) <= EVEN && probability(&rivals) > EVEN;
     if is_split && !class.is_empty() { rivals } else { class }
+}
+
+/// One that is what it should be goes first in a class where its head would have to be further from that: what nobody expects has to be
+/// told from it, not only to fit a little better.
+fn ordered(mut class: Vec<Finding>) -> Vec<Finding> {
+    let Some(head) = class.first() else { return class };
+    let most = class.iter().map(|f| f.evidence).fold(f64::NEG_INFINITY, f64::max);
+    let expected = |f: &Finding| {
+        f.strain < EXPECTED
+            && f.strain + EXPECTED < head.strain
+            && most - f.evidence < 2.0 * TOGETHER
+    };
+    if let Some(k) = class.iter().position(expected) {
+        class[..=k].rotate_right(1);
+    }
+    class
 }
 
 fn probability(findings: &[Finding]) -> f64 {
@@ -309,6 +327,21 @@ mod tests {
         let blur = Finding { takes_along: 3.5, ..good.clone() };
         assert_eq!([&good, &far, &blur].map(|f| adds(f, 0)), [true; 3]);
         assert_eq!([&good, &far, &blur].map(|f| adds(f, 1)), [true, false, false]);
+    }
+
+    #[test]
+    fn what_is_expected_goes_first() {
+        let of = |id, evidence, strain| Finding { strain, ..finding(id, evidence) };
+        let order = |class: &[Finding]| -> Vec<&str> {
+            ordered(class.to_vec()).iter().map(|f| f.id).collect()
+        };
+        // The slow record of Liege: a sensor slower than they are, by 4.7 nats, and the wall that the pipe has.
+        assert_eq!(order(&[of("S4", 368.1, 2.1), of("P1", 363.4, 0.5)]), ["P1", "S4"]);
+        // Too far behind; none that is expected; no further off than the other.
+        assert_eq!(order(&[of("S4", 370.1, 2.1), of("P1", 363.4, 0.5)]), ["S4", "P1"]);
+        assert_eq!(order(&[of("S2", 20.0, 60.0), of("P10", 19.0, 50.0)]), ["S2", "P10"]);
+        assert_eq!(order(&[of("S4", 20.0, 1.4), of("P1", 19.0, 0.5)]), ["S4", "P1"]);
+        assert!(ordered(Vec::new()).is_empty());
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub(crate) const TOGETHER: f64 = 3.0;
 /// ... or this share of what the winner gains, as far as what it leaves is the error of the model and not noise.
 const NEARLY: f64 = 0.15;
 
+/// An effect within so many standard deviations is what is expected.
+pub(super) const EXPECTED: f64 = 1.0;
 /// Share of the probability of all that was tried that a class holds ...
 pub(super) const MOST_OF_IT: f64 = 0.95;
 /// ... with what is no further behind its best one, nats.
