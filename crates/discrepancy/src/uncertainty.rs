@@ -448,6 +448,29 @@ mod tests {
     }
 
     #[test]
+    fn the_noise_of_inputs_is_known() {
+        use crate::bench;
+        let experiment = bench::experiment(&[]);
+        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap());
+        let Uncertainties { sigma, known } = spread.seen(&experiment, &[], &[]);
+        assert!(known.iter().zip(&sigma).all(|(known, sigma)| known <= sigma));
+        // Long before the front: the noise of the inlet arrives at the middle, blurred by steps between its readings.
+        let mut samples = experiment.samples.iter();
+        let i = samples.position(|s| s.sensor == 2 && s.time_s == 1500.0).unwrap();
+        let [inlet, own] = [0, 2].map(|k| experiment.accuracy[k].noise);
+        let of_inputs = (known[i] * known[i] - own * own).sqrt();
+        assert!((0.3..1.3).contains(&(of_inputs / inlet)), "{of_inputs} {inlet}");
+        // Nothing stays nothing, and a meter for one direction shows nothing below it.
+        let track = Track { time_s: vec![0.0, 10.0, 20.0, 30.0], value: vec![0.0, 0.0, 0.01, 1.0] };
+        let mut random = Pcg32::new(1, 1);
+        for _ in 0..50 {
+            let drawn = noisy(&track, 0.1, Kind::Flow, &mut random);
+            assert_eq!((&drawn.time_s, drawn.value[0], drawn.value[1]), (&track.time_s, 0.0, 0.0));
+            assert!(drawn.value[2] >= 0.0 && drawn.value[3] != 1.0);
+        }
+    }
+
+    #[test]
     fn beside_a_pause_a_flow_read_on_its_way_may_have_been_either() {
         // Read on its way at 20 s: what flowed between 10 and 20 s is anything from nothing to twice as much as the line says.
         let track = Track {
