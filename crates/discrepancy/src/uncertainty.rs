@@ -266,7 +266,7 @@ impl Kind {
     }
 }
 
-/// A measured input but for its noise.
+/// A measured input with no more than its noise drawn anew.
 fn noisy(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
     let forward = kind == Kind::Flow && track.value.iter().all(|y| *y >= 0.0);
     let mut of = |y: f64| {
