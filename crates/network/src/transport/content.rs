@@ -37,7 +37,7 @@ impl NetworkState {
 
     /// Mean temperature of the water in a pipe, K; `None` for other edges.
     pub fn pipe_mean_k(&self, edge: usize) -> Option<f64> {
-        self.parcels.mean_k(edge).or_else(|| self.cells.mean_k(edge, 0.0, 1.0))
+        self.parcels.mean_k(edge).or_else(|| self.cells.whole_mean_k(edge))
     }
 
     /// The same between two shares of its length, from port a.
@@ -91,7 +91,7 @@ impl NetworkState {
             Wall::EndVolume => beside_j(self.t_edge_k[edge]),
             Wall::Film(_) => self.cells.wall_k(edge).map_or(0.0, beside_j),
         };
-        let content_j = match self.cells.mean_k(edge, 0.0, 1.0) {
+        let content_j = match self.cells.whole_mean_k(edge) {
             Some(t_k) => pipe.content_kg * medium.enthalpy_j_kg(t_k),
             None => self.parcels.stored_j(edge, medium),
         };

@@ -157,11 +157,11 @@ impl Transport {
     ) -> f64 {
         let (m_flow_kg_s, surroundings_k) = (state.m_flow_kg_s[i], state.surroundings_k[i]);
         let port = Port::upstream(m_flow_kg_s);
-        if let Some(mut content) = state.cells.seen_from(i, port) {
-            let step = cells::Step { m_flow_kg_s, surroundings_k, dt_s };
-            let (_, lost) = content.pass(pipe, &step);
-            state.cells.put(i, port, &content, t_in_k);
-            return lost.value + lost.slope * t_in_k;
+        if let Some(mut content) = state.cells.seen_from(i, port, surroundings_k) {
+            let step = cells::Step { m_flow_kg_s, dt_s };
+            let passed = content.pass(pipe, &step, t_in_k - surroundings_k);
+            state.cells.put(i, port, content, surroundings_k);
+            return passed.lost;
         }
         let time_constant_s = pipe.loss_time_constant_s(m_flow_kg_s);
         let decay = if time_constant_s == pipe.loss_time_constant_s {
@@ -336,13 +336,16 @@ fn content_relation(
     m_flow_kg_s: f64,
     dt_s: f64,
 ) -> Relation {
-    let surroundings_k = state.surroundings_k[i];
-    match state.cells.seen_from(i, Port::upstream(m_flow_kg_s)) {
-        None => plug_flow::relation(&state.parcels, i, pipe, m_flow_kg_s, surroundings_k, dt_s),
+    let around_k = state.surroundings_k[i];
+    match state.cells.seen_from(i, Port::upstream(m_flow_kg_s), around_k) {
+        None => plug_flow::relation(&state.parcels, i, pipe, m_flow_kg_s, around_k, dt_s),
         Some(mut content) => {
-            let step = cells::Step { m_flow_kg_s, surroundings_k, dt_s };
-            let left = content.pass(pipe, &step).0.scaled(1.0 / (m_flow_kg_s.abs() * dt_s));
-            Relation { constant_k: left.value, of_inlet: left.slope, ..Relation::PASS }
+            let step = cells::Step { m_flow_kg_s, dt_s };
+            let passed_kg = m_flow_kg_s.abs() * dt_s;
+            let of_inlet = content.cooled().pass(pipe, &step, 1.0).left / passed_kg;
+            let of_content_k = content.pass(pipe, &step, 0.0).left / passed_kg;
+            let constant_k = around_k + of_content_k - of_inlet * around_k;
+            Relation { constant_k, of_inlet, ..Relation::PASS }
         }
     }
 }
