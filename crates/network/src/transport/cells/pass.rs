@@ -225,9 +225,10 @@ impl Content {
         // Shares of a cell that are exchanged: g dt/M of a cell with D/dx^2.
         let cells = CELLS as f64;
         let number = pipe.dispersion_kg_s * cells * time_s / (pipe.content_kg / cells);
+        let first = self.first_share;
         let mass = |i: usize| match i {
-            0 => self.first_share,
-            CELLS => 1.0 - self.first_share,
+            0 => first,
+            CELLS => 1.0 - first,
             _ => 1.0,
         };
         // Between cell i and i + 1: their middles are closer at the ends.
@@ -252,10 +253,10 @@ impl Content {
             settled = i > 1 && upper[i] == upper[i - 1];
         }
         let mut before = 0.0;
-        for i in 0..=CELLS {
+        for (i, (t, scale)) in self.water.iter_mut().zip(&scale).enumerate() {
             let below = if i > 0 { between(i - 1) } else { 0.0 };
-            before = (mass(i) * self.water[i]) * scale[i] + (below * scale[i]) * before;
-            self.water[i] = before;
+            before = (mass(i) * *t) * scale + (below * scale) * before;
+            *t = before;
         }
         for i in (0..CELLS).rev() {
             before = self.water[i] + upper[i] * before;
