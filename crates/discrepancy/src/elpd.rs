@@ -8,7 +8,7 @@
 //! **Sources** Vehtari, Gelman, Gabry 2017 (key `vehtari2017`).
 
 use crate::fit::Fit;
-use crate::unknown::{Unknown, curvature};
+use crate::unknown::{Unknown, curvature, square};
 use nalgebra::DVector;
 
 /// Log predictive density of every block; `blocks` are ranges of the fitted samples.
@@ -21,8 +21,7 @@ pub fn by_block(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)]) -> V
     let of = |&(from, until): &(usize, usize)| {
         let j = fit.sensitivity.rows(from, until - from);
         let e: DVector<f64> = fit.e.rows(from, until - from).into_owned();
-        let jj = j.tr_mul(&j);
-        let Some(rest) = (&a - jj).cholesky() else { return f64::NEG_INFINITY };
+        let Some(rest) = (&a - square(&j)).cholesky() else { return f64::NEG_INFINITY };
         let foretold = &e + j * rest.solve(&j.tr_mul(&e));
         let along = j.tr_mul(&foretold);
         let square = foretold.norm_squared() - along.dot(&whole.solve(&along));
@@ -40,7 +39,7 @@ pub fn jackknife(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)], i: 
     let of = |&(from, until): &(usize, usize)| {
         let j = fit.sensitivity.rows(from, until - from);
         let e: DVector<f64> = fit.e.rows(from, until - from).into_owned();
-        let rest = (&a - j.tr_mul(&j)).cholesky()?;
+        let rest = (&a - square(&j)).cholesky()?;
         Some(-rest.solve(&j.tr_mul(&e))[i])
     };
     let moved: Vec<f64> = blocks.iter().filter_map(of).collect();

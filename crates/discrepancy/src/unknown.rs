@@ -8,7 +8,7 @@
 //! by `(0.1 u^2 + max(|u| - root 3, 0)^2/0.35^2)/2`: at its limit by 0.15, where a normal distribution of this standard deviation has
 //! fallen by 1.5 as if many at their limits at once were a wonder, and at twice the limit by 12.8, where that has by 6 only.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Dyn, Matrix, Storage};
 use serde::Serialize;
 use std::fmt;
 
@@ -171,12 +171,17 @@ impl Unknown {
     }
 }
 
+/// `j^T j`, by products of blocks (`tr_mul` takes one column after the other).
+pub(crate) fn square<S: Storage<f64, Dyn, Dyn>>(j: &Matrix<f64, Dyn, Dyn, S>) -> DMatrix<f64> {
+    j.transpose() * j
+}
+
 /// Curvature of half of what a fit of unknowns minimises: sensitivities of its residuals, and curvatures of the priors of all in order.
 pub(crate) fn curvature(
     sensitivity: &DMatrix<f64>,
     priors: impl Iterator<Item = f64>,
 ) -> DMatrix<f64> {
-    let mut hessian = sensitivity.tr_mul(sensitivity);
+    let mut hessian = square(sensitivity);
     for (i, prior) in priors.enumerate() {
         hessian[(i, i)] += prior;
     }

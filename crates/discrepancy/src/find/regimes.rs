@@ -1,5 +1,6 @@
 //! What the plant was doing at every sample, by measured signals.
 
+use crate::data::Track;
 use crate::experiment::Experiment;
 use crate::uncertainty::interval_s;
 
@@ -61,19 +62,24 @@ fn each(experiment: &Experiment, holds: impl Fn(usize, f64) -> bool) -> Vec<bool
     experiment.samples.iter().map(|sample| holds(sample.run, sample.time_s)).collect()
 }
 
+/// Of every run the time that counts as shortly before or after, s.
+fn around_s(experiment: &Experiment, sensor: usize) -> Vec<f64> {
+    let of = |tracks: &[Track]| (AROUND.0 * interval_s(&tracks[sensor])).max(AROUND.1);
+    experiment.runs.iter().map(|run| of(&run.tracks)).collect()
+}
+
 fn of_flow(experiment: &Experiment, k: usize, column: &str, all: &mut Vec<Regime>) {
     let values = || experiment.runs.iter().flat_map(|run| run.tracks[k].value.iter());
     let least = OFF * values().fold(0.0_f64, |most, y| most.max(y.abs()));
     let flow = |run: usize, t: f64| reading(experiment, run, k, t);
-    let around =
-        |run: usize| (AROUND.0 * interval_s(&experiment.runs[run].tracks[k])).max(AROUND.1);
+    let around_s = around_s(experiment, k);
     let off = |run: usize, t: f64| flow(run, t).abs() < least;
     let mut add =
         |name: &str, holds: Vec<bool>| all.push(Regime { name: format!("{column} {name}"), holds });
     add("off", each(experiment, off));
     // Some moment of the time before, or after, without flow.
     let near = |run: usize, t: f64, sign: f64| {
-        !off(run, t) && (1..=12).any(|i| off(run, t + sign * around(run) * f64::from(i) / 12.0))
+        !off(run, t) && (1..=12).any(|i| off(run, t + sign * around_s[run] * f64::from(i) / 12.0))
     };
     add("starting", each(experiment, |run, t| near(run, t, -1.0)));
     add("stopping", each(experiment, |run, t| near(run, t, 1.0)));
@@ -114,10 +120,9 @@ fn of_command(experiment: &Experiment, k: usize, column: &str, all: &mut Vec<Reg
         return;
     }
     let share = |run: usize, t: f64| (reading(experiment, run, k, t) - low) / (high - low);
-    let before =
-        |run: usize| (AROUND.0 * interval_s(&experiment.runs[run].tracks[k])).max(AROUND.1);
+    let around_s = around_s(experiment, k);
     let switched =
-        |run: usize, t: f64| (share(run, t) - share(run, t - before(run))).abs() > SWITCHED;
+        |run: usize, t: f64| (share(run, t) - share(run, t - around_s[run])).abs() > SWITCHED;
     let mut add = |name: &str, holds| all.push(Regime { name: format!("{column} {name}"), holds });
     add("switched", each(experiment, switched));
     add("at its upper end", each(experiment, |run, t| share(run, t) > 0.99));
