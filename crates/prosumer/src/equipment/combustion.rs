@@ -210,6 +210,10 @@ impl ThermalUnit for Combustion {
                     content.outlet(engine[0], heat_w, state[STEP_S])
                 })
             }
+            // What others send through an idle boiler is known only now.
+            _ if self.metal.is_some() && m_flow_kg_s == 0.0 && plan.heat_w() == 0.0 => {
+                Outlet::Exchange { w_k: plan.metal_w_k, other_k: state[self.engine_at()] }
+            }
             flow if heat_w > 0.0 && m_flow_kg_s > 0.0 => {
                 let planned_k = heat_w / capacity_w_k(&self.medium, m_flow_kg_s);
                 let hottest_k = match flow {

@@ -19,7 +19,9 @@ pub(super) struct Plan {
     /// Whether the pump of an engine with a content runs.
     pub(super) pump: bool,
     pub(super) m_flow_kg_s: f64,
-    /// Heat from the metal into the water, W.
+    /// Heat from the metal into the water over the difference of their temperatures, W/K.
+    pub(super) metal_w_k: f64,
+    /// That heat, W.
     pub(super) metal_w: f64,
 }
 
@@ -78,12 +80,13 @@ impl Combustion {
         });
         let capacity_w_k = if pump { self.flow.capacity_w_k(&wish) } else { 0.0 };
         let m_flow_kg_s = capacity_w_k / self.medium.heat_capacity_j_kg_k;
-        let metal_w = self.metal.map_or(0.0, |metal| {
+        let metal_w_k = self.metal.map_or(0.0, |metal| {
             let passed = state[self.engine_at() + 1];
             let m_flow_kg_s = if m_flow_kg_s > 0.0 { m_flow_kg_s } else { passed };
             let capacity_w_k = self.medium.heat_capacity_j_kg_k * m_flow_kg_s.abs();
-            metal.heat_w(state[self.engine_at()], return_k, capacity_w_k, state[STEP_S])
+            metal.w_k(capacity_w_k, state[STEP_S])
         });
+        let metal_k = self.metal.map_or(return_k, |_| state[self.engine_at()]);
         Plan {
             main,
             aux,
@@ -94,7 +97,8 @@ impl Combustion {
             overshot,
             pump,
             m_flow_kg_s,
-            metal_w,
+            metal_w_k,
+            metal_w: metal_w_k * (metal_k - return_k),
         }
     }
 }
