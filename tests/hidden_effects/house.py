@@ -96,7 +96,9 @@ def two_boilers(p, flow, t_ret, load_a, load_b, shape, out):
         if m_a < 0:
             # Only what the other boiler sends.
             t_supply_guess = t_back + (from_metal_w_k(m_b) * (metal[1] - t_back) / (m_b * HEAT_CAPACITY) if m_b > 0 else 0.0)
-        sum_back += max(-m_a, 0.0) * t_supply_guess
+        # Its metal takes part, whichever way the water goes.
+        q_back = from_metal_w_k(-m_a) * (metal[0] - t_supply_guess) if m_a < -1e-9 else 0.0
+        sum_back += max(-m_a, 0.0) * t_supply_guess + q_back / HEAT_CAPACITY
         if into > 1e-9:
             t_back = sum_back / into
         t_out = np.empty(2)
@@ -107,6 +109,9 @@ def two_boilers(p, flow, t_ret, load_a, load_b, shape, out):
                 t_out[k] = t_back + q / (m * HEAT_CAPACITY)
                 slower = p[17 + k] if loads[k] > 0 and run[k] < 6 * START_S * p[17 + k] else 1.0
                 metal[k] += (burn[k] - q) / (from_metal_w_k(p[11 + k]) * START_S * slower)
+            elif m < -1e-9:
+                t_out[k] = t_back
+                metal[k] -= q_back / (from_metal_w_k(p[11 + k]) * START_S)
             else:
                 t_out[k] = t_back
                 metal[k] += (t_back - metal[k]) / 3600.0
