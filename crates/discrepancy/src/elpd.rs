@@ -8,12 +8,22 @@
 //! **Sources** Vehtari, Gelman, Gabry 2017 (key `vehtari2017`).
 
 use crate::fit::Fit;
-use crate::unknown::{Unknown, curvature, square};
+use crate::response::STEP_TAKES;
+use crate::unknown::{Target, Unknown, curvature, square};
 use nalgebra::DVector;
+
+/// What is known of an unknown without a block. A jump of a sensor moves readings that lie within it only: how far off its moment could be
+/// without the block it falls into, no straight line tells, so that it is taken for known as well as a jump is short.
+fn precision(unknown: &Unknown) -> f64 {
+    match unknown.target {
+        Target::StepShare(_) => 12.0 / STEP_TAKES.powi(2),
+        _ => unknown.precision(),
+    }
+}
 
 /// Log predictive density of every block; `blocks` are ranges of the fitted samples.
 pub fn by_block(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)]) -> Vec<f64> {
-    let a = curvature(&fit.sensitivity, unknowns.iter().map(Unknown::precision));
+    let a = curvature(&fit.sensitivity, unknowns.iter().map(precision));
     let Some(whole) = a.clone().cholesky() else { return vec![f64::NEG_INFINITY; blocks.len()] };
     let log_det = |factor: &nalgebra::Cholesky<f64, nalgebra::Dyn>| {
         2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>()
@@ -35,7 +45,7 @@ pub fn by_block(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)]) -> V
 /// badly: it is larger by what the 95 % interval of Student's distribution is wider than the normal one, with the degrees of freedom
 /// of so many squares of unlike size, `3 (sum delta_b^2)^2/sum delta_b^4` (Satterthwaite 1946, key `satterthwaite1946`; the 3 as `E delta^4 = 3 (E delta^2)^2`).
 pub fn jackknife(fit: &Fit, unknowns: &[Unknown], blocks: &[(usize, usize)], i: usize) -> f64 {
-    let a = curvature(&fit.sensitivity, unknowns.iter().map(Unknown::precision));
+    let a = curvature(&fit.sensitivity, unknowns.iter().map(precision));
     let of = |&(from, until): &(usize, usize)| {
         let j = fit.sensitivity.rows(from, until - from);
         let e: DVector<f64> = fit.e.rows(from, until - from).into_owned();
@@ -80,7 +90,6 @@ pub fn difference(a: &[f64], b: &[f64]) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::fit::Slopes;
-    use crate::unknown::Target;
     use nalgebra::DMatrix;
 
     #[test]

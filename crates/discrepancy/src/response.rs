@@ -8,7 +8,7 @@ use crate::data::Track;
 use crate::unknown::Target;
 
 /// Share of a run that a step takes.
-const STEP_TAKES: f64 = 0.02;
+pub(crate) const STEP_TAKES: f64 = 0.02;
 
 /// The response of one sensor.
 #[derive(Debug, Clone, PartialEq)]

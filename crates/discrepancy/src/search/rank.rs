@@ -4,13 +4,17 @@ use super::wins::{TOGETHER, together};
 use super::{AS_WELL, FAR_WORSE, Search, TRIED, WARM, excess, prior};
 use crate::catalogue::Candidate;
 use crate::elpd;
-use crate::experiment::Sample;
+use crate::experiment::Experiment;
 use crate::explain::{Finding, values_beside};
 use crate::fit::{Fit, WIDE};
 use crate::profile::profile;
 use crate::trial::Tried;
+use crate::uncertainty::interval_s;
 use crate::unknown::{Estimate, Unknown};
 use std::collections::HashSet;
+
+/// A block of time ends where a sensor does not read for so many of its usual intervals.
+const PAUSE: f64 = 8.0;
 
 impl Search<'_> {
     /// Findings of what was tried, best first; what does badly on samples that were not fitted, would be weaker
@@ -56,7 +60,7 @@ impl Search<'_> {
             let relieved = tolerated_by_null - strained(&t.unknowns, &t.fit.at, &t.places);
             relieved > 0.5 * (t.fit.log_evidence - null.log_evidence)
         };
-        let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
+        let blocks = blocks(self.experiment, &self.likelihood.fitted);
         let of_null = elpd::by_block(null, &self.base, &blocks);
         let finding = |t: &Tried| -> Vec<Finding> {
             let elpd = elpd::by_block(&t.fit, &t.unknowns, &blocks);
@@ -107,7 +111,7 @@ impl Search<'_> {
 
     /// A fitted value with its interval, which no block of time may leave.
     fn estimate(&self, tried: &Tried, place: usize) -> Estimate {
-        let blocks = blocks(&self.experiment.samples, &self.likelihood.fitted);
+        let blocks = blocks(self.experiment, &self.likelihood.fitted);
         let least_sd = elpd::jackknife(&tried.fit, &tried.unknowns, &blocks, place);
         tried.fit.estimate(&tried.unknowns, place, least_sd)
     }
@@ -126,13 +130,22 @@ fn leaves_more(z: f64, least: f64, null_z: f64) -> bool {
     times > FAR_WORSE || (times > AS_WELL.0 && share(z) - share(least) > AS_WELL.1)
 }
 
-/// Ranges of the fitted samples that belong to one block of time of one sensor.
-fn blocks(samples: &[Sample], fitted: &[usize]) -> Vec<(usize, usize)> {
-    let of = |k: usize| (samples[fitted[k]].run, samples[fitted[k]].sensor);
+/// Ranges of the fitted samples that belong to one block of time of one sensor: one that reads now and then only (behind a boiler that
+/// runs) has a block of every time.
+fn blocks(experiment: &Experiment, fitted: &[usize]) -> Vec<(usize, usize)> {
+    let of = |k: usize| &experiment.samples[fitted[k]];
+    let from_one = |k: usize| (of(k).run, of(k).sensor) == (of(k - 1).run, of(k - 1).sensor);
     let mut blocks = Vec::new();
-    let mut from = 0;
+    let (mut from, mut longest_s) = (0, 0.0);
     for k in 1..=fitted.len() {
-        if k == fitted.len() || fitted[k] != fitted[k - 1] + 1 || of(k) != of(k - 1) {
+        if k == from + 1 {
+            longest_s = PAUSE * interval_s(&experiment.runs[of(from).run].tracks[of(from).sensor]);
+        }
+        let goes_on = k < fitted.len()
+            && fitted[k] == fitted[k - 1] + 1
+            && from_one(k)
+            && of(k).time_s - of(k - 1).time_s < longest_s;
+        if !goes_on {
             blocks.push((from, k));
             from = k;
         }
@@ -190,12 +203,18 @@ mod tests {
 
     #[test]
     fn blocks_end_where_samples_are_missing_or_another_sensor_begins() {
-        let sample = |sensor| Sample { run: 0, sensor, time_s: 0.0, value: 0.0 };
-        let samples: Vec<Sample> = (0..20).map(|i| sample(i / 10)).collect();
-        // 0 to 3, 6 to 9 of the first sensor, 10 to 13 of the second; at most 12/8 = 2 samples each.
-        let fitted: Vec<usize> = (0..4).chain(6..14).collect();
-        let found = blocks(&samples, &fitted);
+        let mut experiment = crate::bench::experiment(&[]);
+        let second = experiment.samples.iter().position(|s| s.sensor == 3).unwrap();
+        // 0 to 3, 6 to 9 of the first sensor, four of the second; at most 12/8 = 2 samples each.
+        let fitted: Vec<usize> = (0..4).chain(6..10).chain(second..second + 4).collect();
+        let found = blocks(&experiment, &fitted);
         assert_eq!(found, [(0, 2), (2, 4), (4, 6), (6, 8), (8, 10), (10, 12)]);
-        assert!(blocks(&samples, &[]).is_empty());
+        assert!(blocks(&experiment, &[]).is_empty());
+        // Every 10 s; the second one, which stands at first, reads again after 80 s.
+        for sample in &mut experiment.samples[second + 1..] {
+            sample.time_s += 70.0;
+        }
+        let found = blocks(&experiment, &fitted);
+        assert_eq!(found[4..], [(8, 9), (9, 10), (10, 12)]);
     }
 }
