@@ -24,8 +24,8 @@ PROGRAMS = {"the same with half of the flow in its second half": "half", "the sa
             "the same, 15 K warmer or colder in its second half": "warmer"}
 # Nats from which effects are told apart: a recommendation that promises less is none.
 TOLD_APART = 3.0
-# What the rigs can do otherwise: the house has no such programs.
-OTHERWISE = {"R1": {"half", "hold", "warmer"}, "R2": set(), "R3": {"warmer"}}
+# What the rigs can do otherwise: in the house generators would go on while nothing is drawn.
+OTHERWISE = {"R1": {"half", "hold", "warmer"}, "R2": {"half", "warmer"}, "R3": {"warmer"}}
 
 
 class Again:

@@ -5,7 +5,7 @@
 import numpy as np
 
 import house
-from sensors import SPARE_S, Sensor, as_read, commanded, held
+from sensors import SPARE_S, Sensor, as_read, commanded, held, otherwise
 
 NAME = "R2"
 BLOCK_S, BLOCKS = 900.0, 12
@@ -100,8 +100,8 @@ def neutral(rig):
 
 
 def program(rig):
-    return {"load_a": held(rig, rig["loads"]["a"]), "load_b": held(rig, rig["loads"]["b"]), "flow": as_read(rig, rig["flow"]),
-            "t_ret": as_read(rig, rig["t_ret"]) + 273.15}
+    return {"load_a": held(rig, rig["loads"]["a"]), "load_b": held(rig, rig["loads"]["b"]), "flow": as_read(rig, otherwise(rig, rig["flow"], "flow")),
+            "t_ret": as_read(rig, otherwise(rig, rig["t_ret"], "degc")) + 273.15}
 
 
 def simulate(rig, variants):
