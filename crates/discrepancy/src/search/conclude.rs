@@ -4,8 +4,8 @@ use super::wins::{
     BEHIND, EVEN, EXPECTED, MOST_OF_IT, TOGETHER, foretells, surely_foretells, together, wins,
 };
 use super::{
-    BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
-    TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
+    BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, STILL, Search,
+    Settled, TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
 };
 use crate::error::ExplainError;
 use crate::explain::{Finding, Verdict};
@@ -51,7 +51,7 @@ impl Search<'_> {
         let other =
             left > UNEXPLAINED && excess(left) > LEFT * excess(worst(&settled.null_readings));
         let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
-        if z > TOO_MUCH || other || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
+        if z > STILL || other || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
             let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
             let names: Vec<String> = names.collect();
             let best = format!("the best that was found, {}", names.join(" and "));
@@ -59,7 +59,7 @@ impl Search<'_> {
                 format!(
                     "{best}, would be {drifts} drifts or jumps of sensors: rather one cause of the plant that is not in the catalogue"
                 )
-            } else if z > TOO_MUCH {
+            } else if z > STILL {
                 format!("{best}, leaves residuals of {z:.1} standard deviations")
             } else if other {
                 format!(
@@ -106,8 +106,7 @@ fn class(findings: &[Finding], parallel: &[bool], null_z: f64) -> Vec<Finding> {
 /// Where a class has no more than half of the probability because others that would win too have the rest of it, all of these: that one of
 /// them is missing is sure, which one is not.
 fn with_rivals(class: Vec<Finding>, findings: &[Finding], null_z: f64) -> Vec<Finding> {
-    let wins = |f: &&Finding| f.probability > 0.0 && wins(f, null_z);
-    let rivals: Vec<Finding> = findings.iter().filter(wins).cloned().collect();
+    let rivals: Vec<Finding> = findings.iter().filter(|f| wins(f, null_z)).cloned().collect();
     let is_split = probability(&class) <= EVEN && probability(&rivals) > EVEN;
     if is_split && !class.is_empty() { rivals } else { class }
 }
@@ -282,6 +281,10 @@ mod tests {
         // Nor is an effect of which blocks of time leave open whether it is there.
         let open = Finding { is_open: true, ..finding("A", 30.0) };
         assert!(class(&[open], &[true], 3.0).is_empty());
+        // Nor is the best one, where all are refuted.
+        assert!(
+            class(&[Finding { probability: 0.0, ..finding("A", 30.0) }], &[true], 3.0).is_empty()
+        );
         // Within what the sensors promise only what is very sure counts.
         assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
         assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);

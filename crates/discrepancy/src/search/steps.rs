@@ -140,6 +140,7 @@ impl Search<'_> {
             && pair.fit.log_evidence - null.log_evidence > WINS
             && explained > EXPLAINED
             && plausible
+            && one.probability > 0.0
             && one.elpd > 2.0 * one.elpd_error
         {
             settled.because = format!(

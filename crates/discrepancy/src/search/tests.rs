@@ -114,21 +114,28 @@ fn what_leaves_far_more_than_another_is_refuted() {
 fn a_pair_is_taken_where_it_explains_more_than_one() {
     // The near pipe loses less, the far one more: the house hardly sees it.
     let experiment = bench::experiment(&[loss("near", 0.4), loss("far", 2.0)]);
-    let all = insulations(&experiment);
-    let might = spread(&experiment);
-    let mut search = search(&experiment, &might, &all);
-    let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
-    let null = search.leave_out(null.unwrap());
-    let z = search.z(&null.readings);
-    let mut watch = Stopwatch::new();
-    let round = search.round(null, z, &mut watch).unwrap().unwrap();
-    let first = search.first(round).unwrap();
-    let mut settled = Settled { verdict: Verdict::Unexplained, ..Settled::nothing() };
-    search.pair(&first, &mut settled).unwrap();
-    assert_eq!((settled.verdict, search.taken.len()), (Verdict::Named, 2), "{}", settled.because);
+    let settled = |most: f64| {
+        let mut all = insulations(&experiment);
+        all[0].most = most;
+        let might = spread(&experiment);
+        let mut search = search(&experiment, &might, &all);
+        let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
+        let null = search.leave_out(null.unwrap());
+        let z = search.z(&null.readings);
+        let round = search.round(null, z, &mut Stopwatch::new()).unwrap().unwrap();
+        let first = search.first(round).unwrap();
+        let mut settled = Settled { verdict: Verdict::Unexplained, ..Settled::nothing() };
+        search.pair(&first, &mut settled).unwrap();
+        assert_eq!(search.taken.len(), settled.effects.len());
+        settled
+    };
+    let both = settled(f64::INFINITY);
+    assert_eq!((both.verdict, both.effects.len()), (Verdict::Named, 2), "{}", both.because);
     let value =
-        |pipe: &str| settled.effects.iter().find(|f| f.component == pipe).unwrap().estimate.value;
+        |pipe: &str| both.effects.iter().find(|f| f.component == pipe).unwrap().estimate.value;
     assert!((value("near") - 0.4).abs() < 0.15 && (value("far") - 2.0).abs() < 0.3);
+    // Readings rule one of them out.
+    assert_eq!(settled(-5.0).verdict, Verdict::Unexplained);
 }
 
 #[test]

@@ -38,7 +38,8 @@ pub(super) const EVEN: f64 = 0.5;
 pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
     let sure = f.evidence > SURE
         || (f.tolerated && f.strain > STRAINED && f.evidence > 0.5 * STRAINED * STRAINED);
-    if f.within || f.is_open || (null_z < WITHIN && !sure) {
+    let refuted = f.probability == 0.0;
+    if refuted || f.within || f.is_open || (null_z < WITHIN && !sure) {
         return false;
     }
     // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
