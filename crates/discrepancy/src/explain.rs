@@ -125,6 +125,8 @@ pub struct Explanation {
     pub additions: Vec<Addition>,
     /// Everything that was tried in the first round, best first.
     pub tried: Vec<Finding>,
+    /// What could not be tried, as the model does not run with it.
+    pub not_tried: Vec<NotTried>,
     /// Unknowns of the last fit: name, value, and distance from the middle of their range in standard deviations.
     pub strained: Vec<(String, f64, f64)>,
     /// Before and after, by sensor and regime.
@@ -134,6 +136,17 @@ pub struct Explanation {
     /// Readings of every sample: as measured, of the model as it is, and with the effects.
     #[serde(skip)]
     pub curves: Curves,
+}
+
+/// An effect with which the model does not run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NotTried {
+    /// Word of the catalogue.
+    pub id: &'static str,
+    /// Where.
+    pub component: String,
+    /// What the run ended with.
+    pub because: String,
 }
 
 /// Readings to draw, SI.
@@ -215,6 +228,10 @@ pub fn explain(
     let mut search = Search::new(experiment, &spread, &all, beside, likelihood, validated);
     let settled = search.run(&mut watch)?;
     let strained = settled.strained();
+    let not_tried = |(k, because): (usize, String)| {
+        let Candidate { id, ref component, .. } = all[k];
+        NotTried { id, component: component.clone(), because }
+    };
     let Settled {
         verdict,
         because,
@@ -222,6 +239,7 @@ pub fn explain(
         effects: mut found_effects,
         class,
         tried,
+        fail,
         null_readings,
         additions,
         null: _,
@@ -250,6 +268,7 @@ pub fn explain(
         class,
         additions,
         tried,
+        not_tried: fail.into_iter().map(not_tried).collect(),
         strained,
         gaps,
         times: watch.times,
@@ -326,6 +345,7 @@ fn data_problem(problems: Vec<String>) -> Explanation {
         class: Vec::new(),
         additions: Vec::new(),
         tried: Vec::new(),
+        not_tried: Vec::new(),
         strained: Vec::new(),
         gaps: Vec::new(),
         times: Vec::new(),

@@ -13,6 +13,7 @@
 //! **Sources** Rao 1948 (key `rao1948`).
 
 use crate::catalogue::Candidate;
+use crate::error::ExplainError;
 use crate::experiment::Experiment;
 use crate::fit::Fit;
 use crate::likelihood::Likelihood;
@@ -39,6 +40,14 @@ pub struct Screened {
     pub direction: DVector<f64>,
 }
 
+/// A first look.
+pub struct Looked {
+    /// What could be looked at, best first.
+    pub seen: Vec<Screened>,
+    /// With which the model runs at no strength: places among the candidates, and why.
+    pub fail: Vec<(usize, String)>,
+}
+
 /// What is there without the candidates.
 pub struct Without<'a> {
     /// The experiment.
@@ -53,11 +62,11 @@ pub struct Without<'a> {
 
 impl Without<'_> {
     /// The first look at candidates, best first.
-    pub fn screen(&self, all: &[Candidate], open: &[usize]) -> Vec<Screened> {
+    pub fn screen(&self, all: &[Candidate], open: &[usize]) -> Looked {
         let Some(factor) =
             curvature_at(&self.fit.sensitivity, self.unknowns, &self.fit.at).cholesky()
         else {
-            return Vec::new();
+            return Looked { seen: Vec::new(), fail: Vec::new() };
         };
         let n = &self.fit.sensitivity;
         let without = |d: &DVector<f64>| d - n * factor.solve(&n.tr_mul(d));
@@ -67,8 +76,16 @@ impl Without<'_> {
             let candidate = &all[open[k]];
             let mut best = self.along_tolerance(candidate, open[k], &factor, &left);
             let simulated = self.experiment.is_simulated(&candidate.unknown.target);
+            let (mut runs, mut fails) = (best.is_some(), None);
             for start in strengths(candidate, simulated, stuck) {
-                let Some(d) = self.changes(candidate, start) else { continue };
+                let d = match self.changes(candidate, start) {
+                    Ok(d) => d,
+                    Err(error) => {
+                        fails = Some(error.to_string());
+                        continue;
+                    }
+                };
+                runs = true;
                 let direction = without(&d);
                 let (size, along) = (d.dot(&direction), d.dot(&left.1));
                 if size < 1e-12 {
@@ -81,8 +98,10 @@ impl Without<'_> {
                     best = Some(Screened { candidate: open[k], start, gain, direction });
                 }
             }
-            best
+            (best, fails.filter(|_| !runs).map(|why| (open[k], why)))
         });
+        let (looked, fail): (Vec<_>, Vec<_>) = looked.into_iter().unzip();
+        let fail = fail.into_iter().flatten().collect();
         let mut looked: Vec<Screened> = looked.into_iter().flatten().collect();
         // What lies well within a tolerance that is not fitted (a drift within the class of its sensor) is no effect.
         looked.retain(|screened| {
@@ -96,7 +115,7 @@ impl Without<'_> {
             let candidate = &all[screened.candidate];
             seen.insert((candidate.id, candidate.component.as_str(), candidate.parameter.0))
         });
-        looked
+        Looked { seen: looked, fail }
     }
 
     /// What the tolerances would still move by, and the whitened residuals after that: where they are fitted, nothing and those
@@ -152,7 +171,11 @@ impl Without<'_> {
     }
 
     /// Change of the whitened readings by a candidate.
-    fn changes(&self, candidate: &Candidate, coordinate: f64) -> Option<DVector<f64>> {
+    fn changes(
+        &self,
+        candidate: &Candidate,
+        coordinate: f64,
+    ) -> Result<DVector<f64>, ExplainError> {
         let own = &candidate.unknown;
         let kept = (0..self.unknowns.len()).filter(|&i| !candidate.owns(&self.unknowns[i]));
         let (mut unknowns, mut at): (Vec<Unknown>, Vec<f64>) =
@@ -164,15 +187,16 @@ impl Without<'_> {
         unknowns.push(own.clone());
         at.push(coordinate);
         let mut own = candidate.beside.iter().chain([own]);
-        let readings = if own.any(|unknown| self.experiment.is_simulated(&unknown.target)) {
-            self.experiment.readings(&unknowns, &at).ok()?
-        } else {
-            let (readings, simulated) = (&self.fit.readings, &self.fit.simulated);
-            let sensor = candidate.unknown.target.sensor()?;
-            self.experiment.observed_beside(readings, sensor, simulated, &unknowns, &at)
+        let (readings, simulated) = (&self.fit.readings, &self.fit.simulated);
+        let is_simulated = own.any(|unknown| self.experiment.is_simulated(&unknown.target));
+        let readings = match candidate.unknown.target.sensor().filter(|_| !is_simulated) {
+            Some(sensor) => {
+                self.experiment.observed_beside(readings, sensor, simulated, &unknowns, &at)
+            }
+            None => self.experiment.readings(&unknowns, &at)?,
         };
         let z = |i: usize| (readings[i] - self.fit.readings[i]) / self.likelihood.sigma[i];
-        Some(self.likelihood.whitened(z).component_mul(&self.fit.weight))
+        Ok(self.likelihood.whitened(z).component_mul(&self.fit.weight))
     }
 }
 
@@ -258,7 +282,7 @@ mod tests {
         let experiment = &experiment;
         let without = Without { experiment, unknowns: &base, likelihood: &likelihood, fit: &null };
         let open: Vec<usize> = (0..all.len()).collect();
-        let looked = without.screen(&all, &open);
+        let looked = without.screen(&all, &open).seen;
         let is_slow = |s: &&Screened| {
             (all[s.candidate].id, all[s.candidate].component.as_str()) == ("S4", "T_house")
         };
@@ -270,8 +294,27 @@ mod tests {
         // It is the best one, too, from where nothing is fitted yet; what it gains there is a straight line's guess.
         let fit = unfitted(experiment, &base, &likelihood).unwrap();
         let without = Without { experiment, unknowns: &base, likelihood: &likelihood, fit: &fit };
-        let looked = without.screen(&all, &open);
+        let looked = without.screen(&all, &open).seen;
         assert!(is_slow(&&looked[0]) && looked[0].gain > 0.8 * gain, "{}", looked[0].gain);
+    }
+
+    #[test]
+    fn with_what_the_model_does_not_run_is_said() {
+        let experiment = bench::experiment(&[]);
+        let mut all = candidates(&experiment);
+        all.retain(|c| c.id == "P10");
+        // However far, the far pipe would end before it begins.
+        let far = all.iter().position(|c| c.component == "far").unwrap();
+        (all[far].unknown.mean, all[far].unknown.sd) = (-10.0, 1.0);
+        let n = experiment.samples.len();
+        let likelihood = Likelihood::new(vec![0.02; n], (0..n).collect());
+        let fit = fit(&experiment, &[], &likelihood, &Slopes::new(), Care::Quick).unwrap();
+        let experiment = &experiment;
+        let without = Without { experiment, unknowns: &[], likelihood: &likelihood, fit: &fit };
+        let looked = without.screen(&all, &[0, 1]);
+        let [(k, why)] = &looked.fail[..] else { panic!("{:?}", looked.fail) };
+        assert!(*k == far && why.contains("far"), "{why}");
+        assert!(looked.seen.iter().all(|s| s.candidate != far));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::explain::{Finding, Stopwatch, Verdict};
 use crate::fit::{Care, Fit, Slopes, fit, unfitted};
 use crate::likelihood::Likelihood;
 use crate::next::{Addition, Rivals};
-use crate::screen::{Screened, Without, kept};
+use crate::screen::{Looked, Screened, Without, kept};
 use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::uncertainty::Spread;
@@ -104,6 +104,8 @@ pub(crate) struct Search<'a> {
     validated: Vec<usize>,
     taken: Vec<usize>,
     slopes: Slopes,
+    /// With which the model does not run, and why.
+    fail: Vec<(usize, String)>,
 }
 
 impl<'a> Search<'a> {
@@ -115,8 +117,8 @@ impl<'a> Search<'a> {
         likelihood: Likelihood,
         validated: Vec<usize>,
     ) -> Self {
-        let (taken, slopes) = (Vec::new(), Slopes::new());
-        Self { experiment, spread, all, base, likelihood, validated, taken, slopes }
+        let (taken, slopes, fail) = (Vec::new(), Slopes::new(), Vec::new());
+        Self { experiment, spread, all, base, likelihood, validated, taken, slopes, fail }
     }
 
     pub(crate) fn run(&mut self, watch: &mut Stopwatch) -> Result<Settled, ExplainError> {
@@ -193,6 +195,7 @@ impl<'a> Search<'a> {
         self.doubt(&mut settled)?;
         settled.sigma.clone_from(&self.likelihood.sigma);
         settled.taken.clone_from(&self.taken);
+        settled.fail = std::mem::take(&mut self.fail);
         Ok(settled)
     }
 
@@ -262,7 +265,10 @@ impl<'a> Search<'a> {
         watch: &mut Stopwatch,
     ) -> Result<Option<Round>, ExplainError> {
         let open: Vec<usize> = (0..self.all.len()).filter(|i| !self.taken.contains(i)).collect();
-        let looked = self.screen(&quick, &open);
+        let Looked { seen: looked, fail } = self.screen(&quick, &open);
+        if self.taken.is_empty() {
+            self.fail = fail;
+        }
         watch.lap("screen");
         let could = looked.first().map_or(0.0, |s| s.gain);
         let far = |(u, x): (&Unknown, &f64)| u.fall(*x);
@@ -291,7 +297,7 @@ impl<'a> Search<'a> {
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;
         let mut again: Vec<Start> = rough.into_iter().map(Start::again).collect();
         // What a few samples far off had hidden.
-        let seen = self.screen(&null, &open);
+        let seen = self.screen(&null, &open).seen;
         let known = |s: &&Screened| again.iter().any(|start| start.candidates == [s.candidate]);
         let new: Vec<Start> =
             kept(&seen, MOST_COMPARED).into_iter().filter(|s| !known(s)).map(Start::of).collect();
@@ -320,13 +326,13 @@ impl<'a> Search<'a> {
         let (experiment, likelihood) = (self.experiment, &self.likelihood);
         let Ok(fit) = unfitted(experiment, &base, likelihood) else { return Vec::new() };
         let without = Without { experiment, unknowns: &base, likelihood, fit: &fit };
-        let looked = without.screen(self.all, open);
+        let looked = without.screen(self.all, open).seen;
         let starts: Vec<Start> = kept(&looked, MOST_COMPARED).into_iter().map(Start::of).collect();
         let (base, slopes) = (&base[..], &Slopes::new());
         Common { base, slopes, ..self.common() }.fits(&starts, Care::Quick)
     }
 
-    fn screen(&self, fit: &Fit, open: &[usize]) -> Vec<Screened> {
+    fn screen(&self, fit: &Fit, open: &[usize]) -> Looked {
         let (experiment, unknowns, likelihood) = (self.experiment, &self.base, &self.likelihood);
         Without { experiment, unknowns, likelihood, fit }.screen(self.all, open)
     }

@@ -5,7 +5,7 @@ mod map;
 
 pub use html::html;
 
-use crate::explain::{Explanation, Finding, Verdict};
+use crate::explain::{Explanation, Finding, NotTried, Verdict};
 use crate::find::Found;
 use crate::gap::Gap;
 use crate::next::{AGAIN, Addition};
@@ -63,6 +63,7 @@ pub fn json(explanation: &Explanation) -> Value {
         "class": explanation.class.iter().map(|f| json!([f.id, f.component])).collect::<Vec<_>>(),
         "next_measurements": explanation.additions,
         "tried": explanation.tried.iter().map(effect).collect::<Vec<_>>(),
+        "not_tried": explanation.not_tried,
         "found": explanation.found,
         "unknowns": explanation.strained.iter().map(|(name, value, far)| {
             json!({ "name": name, "value": value, "standard_deviations": far })
@@ -167,6 +168,13 @@ fn next_measurements(out: &mut String, explanation: &Explanation) {
     }
 }
 
+/// What could not be tried, a sentence each.
+fn not_tried(explanation: &Explanation) -> impl Iterator<Item = String> {
+    explanation.not_tried.iter().map(|NotTried { id, component, because }| {
+        format!("{id} at {component} could not be tried, the model does not run with it: {because}")
+    })
+}
+
 /// How long it took.
 fn times(explanation: &Explanation) -> String {
     let each = explanation.times.iter().map(|(part, s)| format!("{part} {s:.1} s"));
@@ -222,6 +230,9 @@ pub fn markdown(title: &str, explanation: &Explanation) -> String {
         let _ = writeln!(out, "\n{} at {}: {}.", f.id, f.component, f.flags.join("; "));
     }
     table(&mut out, "Tried, best first", &explanation.tried);
+    for sentence in not_tried(explanation) {
+        let _ = writeln!(out, "\n{sentence}");
+    }
     if let Some(found) = &explanation.found {
         where_and_when(&mut out, found);
     }

@@ -13,6 +13,8 @@ pub(crate) struct Settled {
     pub(crate) effects: Vec<Finding>,
     pub(crate) class: Vec<Finding>,
     pub(crate) tried: Vec<Finding>,
+    /// Candidates with which the model does not run, and why.
+    pub(crate) fail: Vec<(usize, String)>,
     /// Readings with the tolerances fitted, without an effect.
     pub(crate) null_readings: Vec<f64>,
     /// What would tell the members of the class apart, the most telling first.
@@ -35,6 +37,7 @@ impl Settled {
             effects: Vec::new(),
             class: Vec::new(),
             tried: Vec::new(),
+            fail: Vec::new(),
             null_readings: Vec::new(),
             additions: Vec::new(),
             null: (Vec::new(), Vec::new()),

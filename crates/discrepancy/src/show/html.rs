@@ -1,6 +1,6 @@
 //! `report.html`: one file with figures.
 
-use super::{expected, map, shown_additions, times, upper, value};
+use super::{expected, map, not_tried, shown_additions, times, upper, value};
 use crate::experiment::Experiment;
 use crate::explain::{Explanation, Finding};
 use crate::split::Use;
@@ -93,6 +93,9 @@ pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> 
         }
     }
     html_table(&mut out, "Tried, best first", &explanation.tried);
+    for sentence in not_tried(explanation) {
+        let _ = writeln!(out, "<p>{}</p>", escape(&sentence));
+    }
     if !explanation.times.is_empty() {
         let _ = writeln!(out, "<p>Time: {}.</p>", times(explanation));
     }
