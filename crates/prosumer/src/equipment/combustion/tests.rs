@@ -18,7 +18,7 @@ struct Bench {
     out: Vec<f64>,
     signals: Vec<f64>,
     return_k: f64,
-    /// What others send through it while it wants nothing, kg/s.
+    /// What others send through it while it wants nothing, kg/s; backward where negative.
     creeping_kg_s: f64,
     port: PortFlow,
     exchange: Exchange,
@@ -51,7 +51,8 @@ impl Bench {
         let warmed_k = match outlet {
             _ if m_flow_kg_s == 0.0 => 0.0,
             Outlet::Exchange { w_k, other_k } => {
-                let (constant_k, of_inlet) = Outlet::of_exchange(w_k, other_k, m_flow_kg_s * CP);
+                let (constant_k, of_inlet) =
+                    Outlet::of_exchange(w_k, other_k, m_flow_kg_s.abs() * CP);
                 constant_k + (of_inlet - 1.0) * self.return_k
             }
             outlet => outlet.heat_flow_w().unwrap() / (m_flow_kg_s * CP),
@@ -144,18 +145,20 @@ fn metal_gives_back_what_the_return_has_left_in_it() {
     idle.steps(10.0, 600.0);
     assert!((idle.out("t_metal_k") - 318.15).abs() < 1e-9 && idle.out("heat_j") == 0.0);
     // Water that creeps through it, a hundredth of what its pump had sent, leaves as warm as the metal, and empties it: in 10 min
-    // 0.0033 kg/s 4180 J/(kg K) 600 s/(5000 J/K) = 1.655 time constants, of its 20 K (1 - 13.79/500)^60 = 0.187 are left.
-    let mut creeping = Bench::new(params(5000.0).build(&water()), 45.0);
-    creeping.steps(10.0, 600.0);
-    creeping.signals[MODULATION] = 0.0;
-    creeping.creeping_kg_s = 0.0033;
-    creeping.return_k -= 20.0;
-    creeping.steps(10.0, 10.0);
-    let warmest_k = creeping.out("t_supply_k");
-    assert!((317.5..318.2).contains(&warmest_k), "{warmest_k}");
-    creeping.steps(10.0, 590.0);
-    let left_k = creeping.out("t_metal_k") - creeping.return_k;
-    assert!((left_k - 0.187 * 20.0).abs() < 0.4, "{left_k}");
+    // 0.0033 kg/s 4180 J/(kg K) 600 s/(5000 J/K) = 1.655 time constants, of its 20 K (1 - 13.79/500)^60 = 0.187 are left. Backward too.
+    for m_flow_kg_s in [0.0033, -0.0033] {
+        let mut creeping = Bench::new(params(5000.0).build(&water()), 45.0);
+        creeping.steps(10.0, 600.0);
+        creeping.signals[MODULATION] = 0.0;
+        creeping.creeping_kg_s = m_flow_kg_s;
+        creeping.return_k -= 20.0;
+        creeping.steps(10.0, 10.0);
+        let warmest_k = creeping.port.t_out_k;
+        assert!((317.5..318.2).contains(&warmest_k), "{warmest_k}");
+        creeping.steps(10.0, 590.0);
+        let left_k = creeping.out("t_metal_k") - creeping.return_k;
+        assert!((left_k - 0.187 * 20.0).abs() < 0.4, "{left_k}");
+    }
 }
 
 #[test]
