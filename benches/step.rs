@@ -160,6 +160,59 @@ fn steps(criterion: &mut Criterion) {
     }
 }
 
+/// One pipe of 60 m, 0.4 kg/s; what its temperatures need.
+const PIPE: &str = r#"
+format = 1
+[model]
+name = "pipe"
+[run]
+step = "10s"
+[ground]
+temperature_degc = 10
+[[node]]
+id = "plant"
+kind = "source"
+m_flow_kg_s = 0.4
+temperature_degc = 60
+[[node]]
+id = "house"
+kind = "pressure_boundary"
+pressure_bar = 2
+temperature_degc = 60
+[[edge]]
+id = "pipe"
+kind = "pipe"
+from = "plant"
+to = "house"
+length_m = 60
+inner_diameter_mm = 32
+insulation_resistance_k_m_w = 2
+"#;
+
+/// (c) A step of 10 s of one pipe into which a front is going every two minutes.
+fn pipes(criterion: &mut Criterion) {
+    let wall = "wall_capacity_j_m_k = 1200\n";
+    for (name, keys) in [
+        ("parcels", String::new()),
+        ("end volume", format!("wall = \"end_volume\"\n{wall}")),
+        ("film", format!("wall = \"film\"\n{wall}")),
+        ("dispersion", "dispersion_m2_s = 0.02\n".to_owned()),
+        ("film and dispersion", format!("wall = \"film\"\ndispersion_m2_s = 0.02\n{wall}")),
+    ] {
+        let mut simulation = in_operation(&model(&format!("{PIPE}{keys}")));
+        let inlet = simulation.signal("plant.temperature_k").unwrap();
+        let mut k = 0;
+        group(criterion, "step of a pipe").bench_function(name, |bencher| {
+            bencher.iter(|| {
+                k = (k + 1) % 24;
+                simulation.set(inlet, if k < 12 { 333.15 } else { 318.15 }).unwrap();
+                let end = simulation.time() + Time(10 * NS_PER_S);
+                simulation.advance_to(end, Time(10 * NS_PER_S)).unwrap();
+            });
+        });
+    }
+}
+
 /// Rows of an operation with changing pump, 10 s apart.
 fn rows(simulation: &mut Simulation, pump: &str, speed: f64) -> Vec<Vec<f64>> {
     let signal = speed_signal(simulation, pump);
@@ -261,5 +314,5 @@ fn builds(criterion: &mut Criterion) {
         .bench_function("demo", |bencher| bencher.iter(|| model(black_box(DEMO))));
 }
 
-criterion_group!(benches, hydraulics, steps, recorded_rows, builds);
+criterion_group!(benches, hydraulics, steps, pipes, recorded_rows, builds);
 criterion_main!(benches);
