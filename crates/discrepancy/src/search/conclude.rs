@@ -285,6 +285,10 @@ mod tests {
         assert!(
             class(&[Finding { probability: 0.0, ..finding("A", 30.0) }], &[true], 3.0).is_empty()
         );
+        // Nor is a jump that is not very sure.
+        let jump = |evidence| Finding { parameter: "step_k", ..finding("S3", evidence) };
+        assert!(class(&[jump(24.0)], &[true], 3.0).is_empty());
+        assert_eq!(ids(&class(&[jump(26.0)], &[true], 3.0)), ["S3"]);
         // Within what the sensors promise only what is very sure counts.
         assert!(class(&[finding("A", 20.0)], &[true], 0.7).is_empty());
         assert_eq!(ids(&class(&[finding("A", 26.0)], &[true], 0.7)), ["A"]);

@@ -39,7 +39,9 @@ pub(super) fn wins(f: &Finding, null_z: f64) -> bool {
     let sure = f.evidence > SURE
         || (f.tolerated && f.strain > STRAINED && f.evidence > 0.5 * STRAINED * STRAINED);
     let refuted = f.probability == 0.0;
-    if refuted || f.within || f.is_open || (null_z < WITHIN && !sure) {
+    // The moment of a jump is held where it would have to be foretold: that the rest is foretold says little.
+    let unsure_jump = f.parameter == "step_k" && f.evidence < SURE;
+    if refuted || unsure_jump || f.within || f.is_open || (null_z < WITHIN && !sure) {
         return false;
     }
     // Tolerances foretell as well as an effect that they imitate: only how far they are strained tells.
