@@ -30,6 +30,8 @@ const DRAWS: usize = 12;
 const BESIDE: usize = 1;
 /// An interval so many times the usual one is a gap.
 const GAP: f64 = 2.5;
+/// ... and one so many times is a pause of a sensor that reads now and then.
+const PAUSE: f64 = 8.0;
 /// The earliest and the latest moment of a switch, from the middle between two readings, over their interval.
 const LATEST: f64 = 0.45;
 /// Seed of the first draw: the same data, the same answer.
@@ -48,6 +50,11 @@ pub(crate) fn interval_s(track: &Track) -> f64 {
     let mut steps: Vec<f64> = track.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// A sensor that does not read for so long, s, pauses: its block of time ends, and its curve.
+pub(crate) fn pause_s(track: &Track) -> f64 {
+    PAUSE * interval_s(track)
 }
 
 /// Standard deviation of the moment at which a reading was taken, s.

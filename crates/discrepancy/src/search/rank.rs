@@ -9,12 +9,9 @@ use crate::explain::{Finding, values_beside};
 use crate::fit::{Fit, WIDE};
 use crate::profile::profile;
 use crate::trial::Tried;
-use crate::uncertainty::interval_s;
+use crate::uncertainty::pause_s;
 use crate::unknown::{Estimate, Unknown};
 use std::collections::HashSet;
-
-/// A block of time ends where a sensor does not read for so many of its usual intervals.
-const PAUSE: f64 = 8.0;
 
 impl Search<'_> {
     /// Findings of what was tried, best first; what does badly on samples that were not fitted, would be weaker
@@ -139,7 +136,7 @@ fn blocks(experiment: &Experiment, fitted: &[usize]) -> Vec<(usize, usize)> {
     let (mut from, mut longest_s) = (0, 0.0);
     for k in 1..=fitted.len() {
         if k == from + 1 {
-            longest_s = PAUSE * interval_s(&experiment.runs[of(from).run].tracks[of(from).sensor]);
+            longest_s = pause_s(&experiment.runs[of(from).run].tracks[of(from).sensor]);
         }
         let goes_on = k < fitted.len()
             && fitted[k] == fitted[k - 1] + 1

@@ -4,6 +4,7 @@ use super::{expected, map, not_tried, shown_additions, times, upper, value};
 use crate::experiment::Experiment;
 use crate::explain::{Explanation, Finding};
 use crate::split::Use;
+use crate::uncertainty::pause_s;
 use std::fmt::Write;
 
 /// Points that a curve has at most.
@@ -59,6 +60,7 @@ pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> 
                 };
                 let _ = writeln!(out, "<h3>{}{}</h3>", escape(&of.column), escape(&name));
                 let read = |si: f64| of.of_si(si);
+                let pause_s = pause_s(&measured.tracks[sensor]);
                 let (before, after) = (&explanation.curves.before, &explanation.curves.after);
                 let changed = !explanation.effects.is_empty();
                 let value = |i: usize| read(experiment.samples[i].value);
@@ -81,12 +83,14 @@ pub fn html(title: &str, experiment: &Experiment, explanation: &Explanation) -> 
                     .iter()
                     .map(|&i| explanation.curves.uses[i] == Some(Use::Show))
                     .collect();
-                figure(&mut out, &times, &curves, &shown, &format!("{} in {}", of.column, of.unit));
+                let label = format!("{} in {}", of.column, of.unit);
+                figure(&mut out, &times, &curves, &shown, pause_s, &label);
                 figure(
                     &mut out,
                     &times,
                     &rest,
                     &shown,
+                    pause_s,
                     &format!("simulated less measured, {}", of.unit),
                 );
             }
@@ -152,6 +156,7 @@ fn figure(
     times: &[f64],
     curves: &[(&str, Vec<f64>)],
     shown: &[bool],
+    pause_s: f64,
     label: &str,
 ) {
     let (first, last) = (times[0], times[times.len() - 1].max(times[0] + 1.0));
@@ -208,12 +213,18 @@ fn figure(
     }
     let _ = writeln!(out, "<text x=\"{LEFT}\" y=\"{}\">{}</text>", HEIGHT - 4.0, escape(label));
     let every = times.len().div_ceil(POINTS);
+    let all: Vec<usize> = (0..times.len()).collect();
     for (class, values) in curves {
-        let points: String = (0..times.len())
-            .filter(|i| i % every == 0 || i + 1 == times.len())
-            .map(|i| format!("{:.1},{:.1} ", x(times[i]), y(values[i])))
-            .collect();
-        let _ = writeln!(out, "<polyline class=\"{class}\" points=\"{}\"/>", points.trim_end());
+        // What was read in a pause nobody knows.
+        for part in all.chunk_by(|&i, &j| times[j] - times[i] < pause_s) {
+            let points: String = part
+                .iter()
+                .filter(|&&i| i % every == 0 || i == part[0] || i + 1 == part[0] + part.len())
+                .map(|&i| format!("{:.1},{:.1} ", x(times[i]), y(values[i])))
+                .collect();
+            let points = points.trim_end();
+            let _ = writeln!(out, "<polyline class=\"{class}\" points=\"{points}\"/>");
+        }
     }
     out.push_str("</svg>\n");
 }
