@@ -182,7 +182,7 @@ fn what_is_named_at_a_facility_that_nobody_understands_fits_its_sensors() {
         println!("{:?}: {}", found.verdict, found.because);
         if matches!(found.verdict, Verdict::Named | Verdict::Class) {
             let best = &found.effects[0];
-            assert!(best.validation_z < 2.5, "{test}: {best:?}");
+            assert!(best.validation_z < 4.0, "{test}: {best:?}");
         }
     }
     write_table("explain-rse", "explain", "make validate", &(table + &gaps));

@@ -54,10 +54,8 @@ const EXPLAINED: f64 = 0.5;
 const LEAVES: f64 = 1.6;
 /// ... or takes away this share and foretells in nearly every block: that fronts leave more than their sigma is no second cause.
 const TAKES: f64 = 0.1;
-/// More than this over all is a discrepancy wherever it is, standard deviations.
+/// Whatever was found, more than this is left by another cause, standard deviations.
 const TOO_MUCH: f64 = 4.0;
-/// Whatever was found, more than this over all is left by another cause, standard deviations ...
-const STILL: f64 = 2.5;
 /// ... or where a sensor leaves more than [`UNEXPLAINED`] beyond chance, and this share of what it showed.
 const LEFT: f64 = 0.25;
 /// What comes so near the best one, nats, is fitted with care; at most so many.

@@ -4,8 +4,8 @@ use super::wins::{
     BEHIND, EVEN, EXPECTED, MOST_OF_IT, TOGETHER, foretells, surely_foretells, together, wins,
 };
 use super::{
-    BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, STILL, Search,
-    Settled, TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
+    BEYOND, DIFFERS, EXPLAINED, LEAVES, LEFT, MOST_TOGETHER, PARALLEL, Round, Search, Settled,
+    TAKES, TOO_MUCH, UNEXPLAINED, excess, prior,
 };
 use crate::error::ExplainError;
 use crate::explain::{Finding, Verdict};
@@ -51,7 +51,7 @@ impl Search<'_> {
         let other =
             left > UNEXPLAINED && excess(left) > LEFT * excess(worst(&settled.null_readings));
         let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
-        if z > STILL || other || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
+        if z > TOO_MUCH || other || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
             let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
             let names: Vec<String> = names.collect();
             let best = format!("the best that was found, {}", names.join(" and "));
@@ -59,7 +59,7 @@ impl Search<'_> {
                 format!(
                     "{best}, would be {drifts} drifts or jumps of sensors: rather one cause of the plant that is not in the catalogue"
                 )
-            } else if z > STILL {
+            } else if z > TOO_MUCH {
                 format!("{best}, leaves residuals of {z:.1} standard deviations")
             } else if other {
                 format!(
