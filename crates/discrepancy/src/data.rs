@@ -247,10 +247,17 @@ const RAMPS: f64 = 0.25;
 
 /// A command that goes from a level to nothing or back is switched at once: a single reading between the two was taken meanwhile. What
 /// may go in ramps (the speed of a pump, not the modulation of a generator) does where that happens too often for chance, and stays as it is.
+/// A single reading of a tenth or less of the one before, in front of nothing, is what a transmitter still shows of what is over.
 fn at_once(track: &Track, may_ramp: bool) -> Track {
-    let (t, y) = (&track.time_s, &track.value);
-    let largest = y.iter().fold(0.0_f64, |most, y| most.max(*y));
-    let is_off = |i: usize| y[i] <= OFF * largest;
+    let t = &track.time_s;
+    let largest = track.value.iter().fold(0.0_f64, |most, y| most.max(*y));
+    let nothing = OFF * largest;
+    let of = |i: usize| match track.value[i.saturating_sub(1)..track.value.len().min(i + 2)] {
+        [before, y, after] if y > nothing && y <= HOLDS * before && after <= nothing => after,
+        _ => track.value[i],
+    };
+    let y: Vec<f64> = (0..t.len()).map(of).collect();
+    let is_off = |i: usize| y[i] <= nothing;
     let holds = |i: usize, j: usize| (y[i] - y[j]).abs() <= HOLDS * y[i].abs();
     let between = |i: usize, level: usize| {
         let share = y[i] / y[level];
@@ -292,8 +299,8 @@ mod tests {
             time_s: (0..value.len()).map(|i| 10.0 * i as f64).collect(),
             value: value.to_vec(),
         };
-        // Read at 0.05 at 20 s, once in four times.
-        let switched = at_once(&track(&[0.8, 0.8, 0.05, 0.0, 0.6, 0.6, 0.0, 0.4]), true);
+        // Read at 0.3 at 20 s, once in four times.
+        let switched = at_once(&track(&[0.8, 0.8, 0.3, 0.0, 0.6, 0.6, 0.0, 0.4]), true);
         assert_eq!(switched.time_s, [0.0, 10.0, 19.5, 20.5, 30.0, 40.0, 50.0, 60.0, 70.0]);
         assert_eq!(switched.value, [0.8, 0.8, 0.8, 0.0, 0.0, 0.6, 0.6, 0.0, 0.4]);
         // A ramp, a lower level, one that was read at once, and one that was read on its way each time stay.
@@ -304,6 +311,13 @@ mod tests {
             &[0.8, 0.8, 0.1, 0.0, 0.0, 0.0],
         ] {
             assert_eq!(at_once(&track(plain), true), track(plain));
+        }
+        // What is over by then is off, where it had been read before that too.
+        for (over, cleaned) in [
+            ([0.8, 0.8, 0.05, 0.0, 0.0], vec![0.8, 0.8, 0.0, 0.0, 0.0]),
+            ([0.8, 0.8, 0.5, 0.01, 0.0], vec![0.8, 0.8, 0.8, 0.0, 0.0, 0.0]),
+        ] {
+            assert_eq!(at_once(&track(&over), false).value, cleaned);
         }
         let of_burner = at_once(&track(&[0.8, 0.8, 0.1, 0.0, 0.0, 0.0]), false);
         assert_eq!(of_burner.value, [0.8, 0.8, 0.8, 0.0, 0.0, 0.0, 0.0]);
