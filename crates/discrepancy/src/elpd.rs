@@ -130,4 +130,25 @@ mod tests {
         // 2 - 1 = 1; sqrt(2 * 1).
         assert_eq!(difference(&[3.0, 0.0], &[1.0, 1.0]), (1.0, 2.0_f64.sqrt()));
     }
+
+    #[test]
+    fn the_moment_of_a_jump_is_held_without_its_block() {
+        // Two samples in one block, each moved by 100 standard deviations a share, residuals 1 and -1. Without it the moment is known as
+        // well as a jump is short, A = 12/0.02^2 = 30000; with it 30000 + 2 100^2: -(1 + 1)/2 - ln(5/3)/2 = -1.2554. (With its prior,
+        // 1/0.3^2 = 11.1, it would be -1 - ln(20011/11.1)/2 = -4.75.)
+        let fit = Fit {
+            at: vec![0.4],
+            readings: vec![0.0; 2],
+            e: DVector::from_vec(vec![1.0, -1.0]),
+            weight: DVector::from_element(2, 1.0),
+            log_evidence: 0.0,
+            covariance: DMatrix::from_element(1, 1, 1.0 / 20_011.0),
+            sensitivity: DMatrix::from_element(2, 1, 100.0),
+            slopes: Slopes::new(),
+            simulated: crate::experiment::Simulated::default(),
+        };
+        let unknowns = [Unknown::plain(Target::StepShare(0), 0.5, 0.3)];
+        let found = by_block(&fit, &unknowns, &[(0, 2)]);
+        assert!((found[0] + 1.2554).abs() < 1e-4, "{found:?}");
+    }
 }
