@@ -207,7 +207,7 @@ pub fn explain(
         },
     };
     let before = experiment.observed(&model, &[], &[]);
-    let spread = Spread::new(experiment, model);
+    let spread = Spread::new(experiment, model, &[], &[]);
     let Uncertainties { sigma, known } = spread.seen(experiment, &[], &[]);
     watch.lap("uncertainty");
     let problems = sanity::beside(experiment, &before, &sigma);
@@ -225,7 +225,7 @@ pub fn explain(
     let found_sigma = likelihood.sigma.clone();
     let validated = of(Use::Validate);
     let beside = tolerances(experiment);
-    let mut search = Search::new(experiment, &spread, &all, beside, likelihood, validated);
+    let mut search = Search::new(experiment, &all, beside, likelihood, validated);
     let settled = search.run(&mut watch)?;
     let strained = settled.strained();
     let not_tried = |(k, because): (usize, String)| {
@@ -288,7 +288,7 @@ pub fn compare(
     let uses = split(experiment, split_file)?;
     let model = experiment.simulated(&[], &[], 1)?;
     let before = experiment.observed(&model, &[], &[]);
-    let sigma = Spread::new(experiment, model).seen(experiment, &[], &[]).sigma;
+    let sigma = Spread::new(experiment, model, &[], &[]).seen(experiment, &[], &[]).sigma;
     Ok(gaps(experiment, &uses, &sigma, &before, &before, &before))
 }
 

@@ -8,7 +8,7 @@ mod wins;
 
 use crate::catalogue::Candidate;
 use crate::error::ExplainError;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, Simulated};
 use crate::explain::{Finding, Stopwatch, Verdict};
 use crate::fit::{Care, Fit, Slopes, fit, unfitted};
 use crate::likelihood::Likelihood;
@@ -95,7 +95,6 @@ struct Round {
 
 pub(crate) struct Search<'a> {
     experiment: &'a Experiment,
-    spread: &'a Spread,
     all: &'a [Candidate],
     base: Vec<Unknown>,
     likelihood: Likelihood,
@@ -109,14 +108,13 @@ pub(crate) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(crate) fn new(
         experiment: &'a Experiment,
-        spread: &'a Spread,
         all: &'a [Candidate],
         base: Vec<Unknown>,
         likelihood: Likelihood,
         validated: Vec<usize>,
     ) -> Self {
         let (taken, slopes, fail) = (Vec::new(), Slopes::new(), Vec::new());
-        Self { experiment, spread, all, base, likelihood, validated, taken, slopes, fail }
+        Self { experiment, all, base, likelihood, validated, taken, slopes, fail }
     }
 
     pub(crate) fn run(&mut self, watch: &mut Stopwatch) -> Result<Settled, ExplainError> {
@@ -127,7 +125,8 @@ impl<'a> Search<'a> {
             self.likelihood.forget();
             let care = if is_first { Care::Alone } else { Care::Quick };
             let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
-            self.likelihood.predict(self.spread.seen(self.experiment, &self.base, &null.at));
+            let base = self.base.clone();
+            self.predict(null.simulated.clone(), &base, &null.at);
             // As large as what is predicted beside the noise of the sensors really is.
             self.likelihood.rescale(self.experiment, &null.readings);
             self.likelihood.temper(self.experiment, &null.readings);
@@ -214,9 +213,10 @@ impl<'a> Search<'a> {
         Rivals { experiment, likelihood, all: self.all, members }.additions()
     }
 
-    /// Predicts what might have been as the sensors of a fit show it.
-    fn predict(&mut self, unknowns: &[Unknown], at: &[f64]) {
-        self.likelihood.predict(self.spread.seen(self.experiment, unknowns, at));
+    /// Predicts what might have been as the plant and the sensors of a fit show it.
+    fn predict(&mut self, simulated: Simulated, unknowns: &[Unknown], at: &[f64]) {
+        let spread = Spread::new(self.experiment, simulated, unknowns, at);
+        self.likelihood.predict(spread.seen(self.experiment, unknowns, at));
     }
 
     fn z(&self, readings: &[f64]) -> f64 {
@@ -289,7 +289,7 @@ impl<'a> Search<'a> {
         let (quick, e) = (quick.readings, quick.e);
         let none = Round { quick, e, looked, null_z, tried: Vec::new(), findings: Vec::new() };
         let Some(best) = rough.first() else { return Ok(Some(none)) };
-        self.predict(&best.unknowns, &best.fit.at);
+        self.predict(best.fit.simulated.clone(), &best.unknowns, &best.fit.at);
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;

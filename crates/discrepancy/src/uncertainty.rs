@@ -12,6 +12,7 @@
 //! **Assumptions** what an input does in a gap is a bridge between the readings at its ends; its middle is as uncertain as half of
 //! the change that the input usually makes in such a time, and a third of the one it made.
 //!
+//! All of these are simulated with the effects and tolerances that were fitted: they carry on what inputs leave open.
 //! Offsets and gains of sensors are not in sigma: they are the same in all samples, and fitted.
 
 use crate::catalogue::LAG_S;
@@ -74,7 +75,7 @@ pub struct Uncertainties {
 
 /// What the model might have given: every compared quantity before the sensors.
 pub struct Spread {
-    /// As the model is.
+    /// With the inputs as they were read.
     model: Simulated,
     /// In half the step; from water that begins otherwise; of more layers; with commands switched early, and late.
     others: [Option<Simulated>; 5],
@@ -85,24 +86,33 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// From simulations; `model` is the one of the model as it is.
-    pub fn new(experiment: &Experiment, model: Simulated) -> Self {
-        let starts: Vec<(Unknown, f64)> = (0..experiment.runs.len())
-            .filter_map(|run| {
-                let first = experiment.first(run)?;
-                Some((Unknown::plain(Target::Initial(run), 0.0, 1.0), first.uneven_k))
-            })
-            .collect();
-        let (unknowns, at): (Vec<_>, Vec<_>) = starts.into_iter().unzip();
+    /// From simulations with these effects and tolerances, which carry on what inputs leave open; `model` is the one of the inputs as they
+    /// were read.
+    pub fn new(
+        experiment: &Experiment,
+        model: Simulated,
+        unknowns: &[Unknown],
+        at: &[f64],
+    ) -> Self {
         // Warmer, or where the model does not run so, colder.
         let started = |sign: f64| {
-            let at: Vec<f64> = at.iter().map(|x| sign * x).collect();
+            let (mut unknowns, mut at) = (unknowns.to_vec(), at.to_vec());
+            for run in 0..experiment.runs.len() {
+                let Some(first) = experiment.first(run) else { continue };
+                let target = Target::Initial(run);
+                let i = unknowns.iter().position(|u| u.target == target).unwrap_or_else(|| {
+                    unknowns.push(Unknown::plain(target, 0.0, 1.0));
+                    at.push(0.0);
+                    at.len() - 1
+                });
+                at[i] += sign * first.uneven_k;
+            }
             experiment.simulated(&unknowns, &at, 1)
         };
-        let plain = |other: Experiment| other.simulated(&[], &[], 1).ok();
+        let plain = |other: Experiment| other.simulated(unknowns, at, 1).ok();
         // What was drawn and does not run is not what was.
         let all = on_all_cores(5 + 2 * DRAWS, |k| match k {
-            0 => experiment.simulated(&[], &[], 2).ok(),
+            0 => experiment.simulated(unknowns, at, 2).ok(),
             1 => started(1.0).or_else(|_| started(-1.0)).ok(),
             2 => grid::finer(experiment).and_then(plain),
             3 => switched_at(experiment, -LATEST).and_then(plain),
@@ -436,7 +446,7 @@ mod tests {
     fn a_slow_sensor_keeps_what_a_moment_has_left_open() {
         use crate::bench;
         let experiment = bench::experiment(&[]);
-        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap());
+        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap(), &[], &[]);
         let slow = [Unknown::plain(Target::Lag(2), 0.0, 1.0)];
         let [fast, slow] = [0.0, 40.0].map(|lag_s| spread.seen(&experiment, &slow, &[lag_s]).sigma);
         // The front passes the middle until some 2 min after 1800 s; at 2060 s it is over, but not for a sensor of 40 s.
@@ -455,10 +465,30 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_carries_on_what_inputs_leave_open() {
+        use crate::{bench, catalogue::effect_target};
+        let experiment = bench::experiment(&[]);
+        let blur = effect_target("P7", "near", "dispersion_m2_s");
+        let blur = [Unknown::plain(blur, 0.0, 1.0)];
+        let [sharp, blurred] = [0.0, 1.0].map(|at| {
+            let model = experiment.simulated(&blur, &[at], 1).unwrap();
+            Spread::new(&experiment, model, &blur, &[at]).seen(&experiment, &blur, &[at]).sigma
+        });
+        // The front leaves at 1800 s, and its middle arrives after some 2 min; blurred it is there a minute earlier, and less sharp.
+        let at = |time_s: f64| {
+            let mut samples = experiment.samples.iter();
+            samples.position(|s| s.sensor == 2 && s.time_s == time_s).unwrap()
+        };
+        let (before, during) = (at(1860.0), at(1910.0));
+        assert!(blurred[before] > 1.3 * sharp[before], "{} {}", blurred[before], sharp[before]);
+        assert!(blurred[during] < 0.5 * sharp[during], "{} {}", blurred[during], sharp[during]);
+    }
+
+    #[test]
     fn the_noise_of_inputs_is_known() {
         use crate::bench;
         let experiment = bench::experiment(&[]);
-        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap());
+        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap(), &[], &[]);
         let Uncertainties { sigma, known } = spread.seen(&experiment, &[], &[]);
         assert!(known.iter().zip(&sigma).all(|(known, sigma)| known <= sigma));
         // Long before the front: the noise of the inlet arrives at the middle, blurred by steps between its readings.

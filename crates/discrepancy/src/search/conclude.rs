@@ -36,8 +36,9 @@ impl Search<'_> {
     /// or three effects show for the first time together.
     pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let (unknowns, at) = settled.chosen.as_ref().unwrap_or(&settled.null);
-        self.predict(unknowns, at);
-        let readings = self.experiment.readings(unknowns, at)?;
+        let simulated = self.experiment.simulated(unknowns, at, 1)?;
+        let readings = self.experiment.observed(&simulated, unknowns, at);
+        self.predict(simulated, unknowns, at);
         self.likelihood.rescale(self.experiment, &readings);
         if settled.chosen.is_none() {
             return Ok(());
