@@ -140,8 +140,7 @@ impl<'a> Search<'a> {
                 settled.null_readings.clone_from(&null.readings);
                 settled.null = (self.base.clone(), null.at.clone());
             }
-            let worst =
-                differs(self.experiment, &self.likelihood.sigma, &null.readings, &self.validated);
+            let worst = self.worst(&null.readings);
             let null = if is_first { self.leave_out(null) } else { null };
             let Some(round) = self.round(null, z, watch)? else {
                 if is_first {
@@ -221,6 +220,11 @@ impl<'a> Search<'a> {
 
     fn z(&self, readings: &[f64]) -> f64 {
         self.likelihood.rms(self.experiment, readings, &self.validated)
+    }
+
+    /// Residuals of the worst sensor that are more than chance, over all samples but those to show; 0 where none are.
+    fn worst(&self, readings: &[f64]) -> f64 {
+        differs(self.experiment, &self.likelihood.sigma, readings, &self.likelihood.fitted)
     }
 
     /// The largest reduction of the error of a sensor on samples that were not fitted, relative.

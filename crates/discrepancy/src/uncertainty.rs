@@ -10,7 +10,8 @@
 //! unknown of the fit).
 //!
 //! **Assumptions** what an input does in a gap is a bridge between the readings at its ends; its middle is as uncertain as half of
-//! the change that the input usually makes in such a time, and a third of the one it made.
+//! the change that the input usually makes in such a time, and a third of the one it made. One that is off at one end and on at the other
+//! was switched at any moment of it.
 //!
 //! All of these are simulated with the effects and tolerances that were fitted: they carry on what inputs leave open.
 //! Offsets and gains of sensors are not in sigma: they are the same in all samples, and fitted.
@@ -333,7 +334,13 @@ fn redrawn(track: &Track, noise: f64, kind: Kind, random: &mut Pcg32) -> Track {
         drawn.time_s.push(t[i]);
         drawn.value.push(if is_flow && forward { value.max(0.0) } else { value });
         let gap_s = t[after] - t[i];
-        if gap_s > GAP * usual_s {
+        if gap_s > GAP * usual_s && jumps(i) {
+            // At any moment of the gap.
+            let share = 0.5 + (normal() / 12.0_f64.sqrt()).clamp(-LATEST, LATEST);
+            let beside_s = (0.5 - LATEST) * usual_s;
+            drawn.time_s.extend([-beside_s, beside_s].map(|dt| t[i] + share * gap_s + dt));
+            drawn.value.extend([y[i], y[after]]);
+        } else if gap_s > GAP * usual_s {
             let lag = ((gap_s / usual_s).round() as usize).clamp(1, t.len() - 1);
             let changes = (lag..t.len()).map(|k| (y[k] - y[k - lag]).powi(2));
             let usual = (changes.sum::<f64>() / (t.len() - lag) as f64).sqrt();
@@ -437,6 +444,20 @@ mod tests {
             largest = largest.max((drawn.at(440.0) - track.at(440.0)).abs());
         }
         assert!(largest > 0.5, "{largest}");
+        // What is on in front of a gap of 40 s and off behind it is switched at any moment of it, at once.
+        let command = Track {
+            time_s: vec![0.0, 10.0, 20.0, 30.0, 70.0, 80.0],
+            value: vec![0.6, 0.6, 0.6, 0.6, 0.0, 0.0],
+        };
+        let moments = (0..50).map(|draw| {
+            let drawn = redrawn(&command, 0.0, Kind::Command, &mut Pcg32::new(1, draw));
+            let i = drawn.value.iter().position(|y| *y == 0.0).unwrap();
+            assert_eq!(drawn.value[i - 1], 0.6);
+            assert!(drawn.time_s.is_sorted() && drawn.time_s[i] - drawn.time_s[i - 1] < 1.01);
+            drawn.time_s[i]
+        });
+        let (least, most) = moments.fold((70.0_f64, 30.0_f64), |(a, b), t| (a.min(t), b.max(t)));
+        assert!((32.0..36.0).contains(&least) && (64.0..69.0).contains(&most), "{least} {most}");
         // Readings of nothing stay nothing.
         let still = Track { time_s: vec![0.0, 10.0, 20.0], value: vec![0.0; 3] };
         assert_eq!(redrawn(&still, 0.1, Kind::Flow, &mut Pcg32::new(1, 1)).value, [0.0; 3]);

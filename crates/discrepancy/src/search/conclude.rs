@@ -9,7 +9,6 @@ use super::{
 };
 use crate::error::ExplainError;
 use crate::explain::{Finding, Verdict};
-use crate::significance::differs;
 use crate::trial::cosine;
 
 impl Search<'_> {
@@ -44,13 +43,9 @@ impl Search<'_> {
             return Ok(());
         }
         let z = self.z(&readings);
-        let worst = |readings: &[f64]| {
-            let (sigma, fitted) = (&self.likelihood.sigma, &self.likelihood.fitted);
-            differs(self.experiment, sigma, readings, fitted)
-        };
-        let left = worst(&readings);
-        let other =
-            left > UNEXPLAINED && excess(left) > LEFT * excess(worst(&settled.null_readings));
+        let left = self.worst(&readings);
+        let before = self.worst(&settled.null_readings);
+        let other = left > UNEXPLAINED && excess(left) > LEFT * excess(before);
         let drifts = settled.effects.iter().filter(|f| f.id == "S3").count();
         if z > TOO_MUCH || other || drifts > 1 || settled.effects.len() > MOST_TOGETHER {
             let names = settled.effects.iter().map(|f| format!("{} at {}", f.id, f.component));
