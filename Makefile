@@ -102,7 +102,7 @@ peers: .venv-peers/.installed .venv-heat/.installed ## Networks against EPANET a
 
 .venv-score/.installed:
 	$(PYTHON) -m venv .venv-score
-	.venv-score/bin/python -m pip install --quiet --disable-pip-version-check numpy numba
+	.venv-score/bin/python -m pip install --quiet --disable-pip-version-check numpy numba pytest
 	touch $@
 
 # Seeds below 1 000 000 are of development, from there on for reports. Restartable: what has an answer is not run again.
@@ -112,6 +112,7 @@ SCORE ?= target/hidden-effects-$(SEED)
 RESULTS ?= $(notdir $(lastword $(sort $(wildcard $(SCORE)/results-*))))
 explain-score: .venv-score/.installed ## What explain finds in data with a hidden effect: 200 cases, table in docs (SEED, DRAWS)
 	cargo build --release -p anergy
+	.venv-score/bin/python -m pytest -q tests/hidden_effects
 	for rig in R1 R2 R3; do \
 		.venv-score/bin/python tests/hidden_effects/twin.py $(SCORE) --rig $$rig && \
 		.venv-score/bin/python tests/hidden_effects/cases.py $(SCORE) --rig $$rig --seed $(SEED) --draws $(DRAWS) || exit 1; done
