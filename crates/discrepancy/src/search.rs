@@ -1,6 +1,7 @@
 //! Name: which effects explain the difference; one after the other, with a step back, and pairs that hide each other.
 
 mod conclude;
+mod left;
 mod rank;
 mod settled;
 mod steps;
@@ -8,13 +9,12 @@ mod wins;
 
 use crate::catalogue::Candidate;
 use crate::error::ExplainError;
-use crate::experiment::{Experiment, Simulated};
+use crate::experiment::Experiment;
 use crate::explain::{Finding, Stopwatch, Verdict};
 use crate::fit::{Care, Fit, Slopes, fit, unfitted};
 use crate::likelihood::Likelihood;
 use crate::next::{Addition, Rivals};
 use crate::screen::{Looked, Screened, Without, kept};
-use crate::significance::differs;
 use crate::trial::{Common, Start, Tried};
 use crate::uncertainty::Spread;
 use crate::unknown::Unknown;
@@ -125,8 +125,8 @@ impl<'a> Search<'a> {
             self.likelihood.forget();
             let care = if is_first { Care::Alone } else { Care::Quick };
             let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
-            let base = self.base.clone();
-            self.predict(null.simulated.clone(), &base, &null.at);
+            let (taken, base) = (self.taken.clone(), self.base.clone());
+            self.predict(&taken, &base, &null.at)?;
             // As large as what is predicted beside the noise of the sensors really is.
             self.likelihood.rescale(self.experiment, &null.readings);
             self.likelihood.temper(self.experiment, &null.readings);
@@ -212,31 +212,20 @@ impl<'a> Search<'a> {
         Rivals { experiment, likelihood, all: self.all, members }.additions()
     }
 
-    /// Predicts what might have been as the plant and the sensors of a fit show it.
-    fn predict(&mut self, simulated: Simulated, unknowns: &[Unknown], at: &[f64]) {
-        let spread = Spread::new(self.experiment, simulated, unknowns, at);
-        self.likelihood.predict(spread.seen(self.experiment, unknowns, at));
-    }
-
-    fn z(&self, readings: &[f64]) -> f64 {
-        self.likelihood.rms(self.experiment, readings, &self.validated)
-    }
-
-    /// Residuals of the worst sensor that are more than chance, over all samples but those to show; 0 where none are.
-    fn worst(&self, readings: &[f64]) -> f64 {
-        differs(self.experiment, &self.likelihood.sigma, readings, &self.likelihood.fitted)
-    }
-
-    /// The largest reduction of the error of a sensor on samples that were not fitted, relative.
-    fn reduction(&self, before: &[f64], after: &[f64]) -> f64 {
-        let of = |sensor: usize| {
-            let own =
-                self.validated.iter().filter(|&&i| self.experiment.samples[i].sensor == sensor);
-            let own: Vec<usize> = own.copied().collect();
-            let rms = |readings| self.likelihood.rms(self.experiment, readings, &own);
-            if own.is_empty() { 0.0 } else { 1.0 - rms(after) / rms(before).max(1e-300) }
-        };
-        (0..self.experiment.sensors.sensor.len()).map(of).fold(0.0, f64::max)
+    /// Predicts what might have been with these effects, as the sensors of a fit show it. (Tolerances are as they should be: fitted ones
+    /// would favour the effect beside which they were.)
+    fn predict(
+        &mut self,
+        effects: &[usize],
+        with: &[Unknown],
+        at: &[f64],
+    ) -> Result<(), ExplainError> {
+        let is_effect = |u: &Unknown| effects.iter().any(|&k| self.all[k].owns(u));
+        let of = with.iter().zip(at).filter(|(u, _)| is_effect(u));
+        let (effects, values): (Vec<Unknown>, Vec<f64>) = of.map(|(u, x)| (u.clone(), *x)).unzip();
+        let spread = Spread::new(self.experiment, &effects, &values)?;
+        self.likelihood.predict(spread.seen(self.experiment, with, at));
+        Ok(())
     }
 
     /// Leaves out what can hardly change anything.
@@ -293,7 +282,8 @@ impl<'a> Search<'a> {
         let (quick, e) = (quick.readings, quick.e);
         let none = Round { quick, e, looked, null_z, tried: Vec::new(), findings: Vec::new() };
         let Some(best) = rough.first() else { return Ok(Some(none)) };
-        self.predict(best.fit.simulated.clone(), &best.unknowns, &best.fit.at);
+        let effects = [&self.taken[..], &best.candidates].concat();
+        self.predict(&effects, &best.unknowns, &best.fit.at)?;
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;

@@ -10,6 +10,7 @@ use super::{
 use crate::error::ExplainError;
 use crate::explain::{Finding, Verdict};
 use crate::trial::cosine;
+use crate::uncertainty::Spread;
 
 impl Search<'_> {
     /// What could be added next, with what these data do not tell from it. Empty where that is no more probable than that chance
@@ -35,9 +36,10 @@ impl Search<'_> {
     /// or three effects show for the first time together.
     pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let (unknowns, at) = settled.chosen.as_ref().unwrap_or(&settled.null);
-        let simulated = self.experiment.simulated(unknowns, at, 1)?;
-        let readings = self.experiment.observed(&simulated, unknowns, at);
-        self.predict(simulated, unknowns, at);
+        // What is left in the end is beside all that was fitted.
+        let spread = Spread::new(self.experiment, unknowns, at)?;
+        self.likelihood.predict(spread.seen(self.experiment, unknowns, at));
+        let readings = self.experiment.readings(unknowns, at)?;
         self.likelihood.rescale(self.experiment, &readings);
         if settled.chosen.is_none() {
             return Ok(());
