@@ -225,7 +225,7 @@ pub fn explain(
     let found_sigma = likelihood.sigma.clone();
     let validated = of(Use::Validate);
     let beside = tolerances(experiment);
-    let mut search = Search::new(experiment, &all, beside, likelihood, validated);
+    let mut search = Search::new(experiment, &spread, &all, beside, likelihood, validated);
     let settled = search.run(&mut watch)?;
     let strained = settled.strained();
     let not_tried = |(k, because): (usize, String)| {

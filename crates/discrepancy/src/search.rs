@@ -95,6 +95,7 @@ struct Round {
 
 pub(crate) struct Search<'a> {
     experiment: &'a Experiment,
+    spread: &'a Spread,
     all: &'a [Candidate],
     base: Vec<Unknown>,
     likelihood: Likelihood,
@@ -108,13 +109,14 @@ pub(crate) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(crate) fn new(
         experiment: &'a Experiment,
+        spread: &'a Spread,
         all: &'a [Candidate],
         base: Vec<Unknown>,
         likelihood: Likelihood,
         validated: Vec<usize>,
     ) -> Self {
         let (taken, slopes, fail) = (Vec::new(), Slopes::new(), Vec::new());
-        Self { experiment, all, base, likelihood, validated, taken, slopes, fail }
+        Self { experiment, spread, all, base, likelihood, validated, taken, slopes, fail }
     }
 
     pub(crate) fn run(&mut self, watch: &mut Stopwatch) -> Result<Settled, ExplainError> {
@@ -125,8 +127,7 @@ impl<'a> Search<'a> {
             self.likelihood.forget();
             let care = if is_first { Care::Alone } else { Care::Quick };
             let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, care)?;
-            let (taken, base) = (self.taken.clone(), self.base.clone());
-            self.predict(&taken, &base, &null.at)?;
+            self.likelihood.predict(self.spread.seen(self.experiment, &self.base, &null.at));
             // As large as what is predicted beside the noise of the sensors really is.
             self.likelihood.rescale(self.experiment, &null.readings);
             self.likelihood.temper(self.experiment, &null.readings);
@@ -212,20 +213,9 @@ impl<'a> Search<'a> {
         Rivals { experiment, likelihood, all: self.all, members }.additions()
     }
 
-    /// Predicts what might have been with these effects, as the sensors of a fit show it. (Tolerances are as they should be: fitted ones
-    /// would favour the effect beside which they were.)
-    fn predict(
-        &mut self,
-        effects: &[usize],
-        with: &[Unknown],
-        at: &[f64],
-    ) -> Result<(), ExplainError> {
-        let is_effect = |u: &Unknown| effects.iter().any(|&k| self.all[k].owns(u));
-        let of = with.iter().zip(at).filter(|(u, _)| is_effect(u));
-        let (effects, values): (Vec<Unknown>, Vec<f64>) = of.map(|(u, x)| (u.clone(), *x)).unzip();
-        let spread = Spread::new(self.experiment, &effects, &values)?;
-        self.likelihood.predict(spread.seen(self.experiment, with, at));
-        Ok(())
+    /// Predicts what might have been as the sensors of a fit show it.
+    fn predict(&mut self, unknowns: &[Unknown], at: &[f64]) {
+        self.likelihood.predict(self.spread.seen(self.experiment, unknowns, at));
     }
 
     /// Leaves out what can hardly change anything.
@@ -282,8 +272,7 @@ impl<'a> Search<'a> {
         let (quick, e) = (quick.readings, quick.e);
         let none = Round { quick, e, looked, null_z, tried: Vec::new(), findings: Vec::new() };
         let Some(best) = rough.first() else { return Ok(Some(none)) };
-        let effects = [&self.taken[..], &best.candidates].concat();
-        self.predict(&effects, &best.unknowns, &best.fit.at)?;
+        self.predict(&best.unknowns, &best.fit.at);
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&none.quick, &best.fit.readings);
         let null = fit(self.experiment, &self.base, &self.likelihood, &self.slopes, Care::Quick)?;

@@ -36,7 +36,7 @@ impl Search<'_> {
     /// or three effects show for the first time together.
     pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let (unknowns, at) = settled.chosen.as_ref().unwrap_or(&settled.null);
-        // What is left in the end is beside all that was fitted.
+        // What inputs leave open the effects carry on.
         let spread = Spread::new(self.experiment, unknowns, at)?;
         self.likelihood.predict(spread.seen(self.experiment, unknowns, at));
         let readings = self.experiment.readings(unknowns, at)?;

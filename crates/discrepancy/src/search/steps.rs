@@ -51,7 +51,7 @@ impl Search<'_> {
             return Ok(());
         };
         let readings = self.experiment.readings(&unknowns, &at)?;
-        self.predict(&self.taken.clone(), &unknowns, &at)?;
+        self.predict(&unknowns, &at);
         self.likelihood.learn(self.experiment, &readings);
         self.likelihood.temperature = self.temperature(&settled.null_readings, &readings);
         let started = unknowns.into_iter().zip(at);
@@ -110,7 +110,7 @@ impl Search<'_> {
         rough.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
         rough.truncate(1);
         let Some(best) = rough.first() else { return Ok(()) };
-        self.predict(&best.candidates, &best.unknowns, &best.fit.at)?;
+        self.predict(&best.unknowns, &best.fit.at);
         self.likelihood.learn(self.experiment, &best.fit.readings);
         self.likelihood.temperature = self.temperature(&first.round.quick, &best.fit.readings);
         let again: Vec<Start> = rough.into_iter().map(Start::again).collect();

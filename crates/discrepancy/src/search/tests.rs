@@ -15,16 +15,24 @@ fn insulations(experiment: &Experiment) -> Vec<Candidate> {
     all
 }
 
-fn search<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> Search<'a> {
+fn spread(experiment: &Experiment) -> Spread {
+    Spread::new(experiment, &[], &[]).unwrap()
+}
+
+fn search<'a>(experiment: &'a Experiment, spread: &'a Spread, all: &'a [Candidate]) -> Search<'a> {
     let n = experiment.samples.len();
     let likelihood = Likelihood::new(vec![0.05; n], (0..n).collect());
     let base = tolerances(experiment);
-    Search::new(experiment, all, base, likelihood, (0..n).collect())
+    Search::new(experiment, spread, all, base, likelihood, (0..n).collect())
 }
 
 /// A search that has taken all candidates, one after the other.
-fn with_all<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> (Search<'a>, Settled) {
-    let (mut search, mut settled) = (search(experiment, all), Settled::nothing());
+fn with_all<'a>(
+    experiment: &'a Experiment,
+    spread: &'a Spread,
+    all: &'a [Candidate],
+) -> (Search<'a>, Settled) {
+    let (mut search, mut settled) = (search(experiment, spread, all), Settled::nothing());
     let unknowns: &[Unknown] = &search.base;
     let at: Vec<f64> = unknowns.iter().map(|u| u.start).collect();
     settled.null_readings = experiment.readings(unknowns, &at).unwrap();
@@ -42,7 +50,8 @@ fn with_all<'a>(experiment: &'a Experiment, all: &'a [Candidate]) -> (Search<'a>
 fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
     let only_far = bench::experiment(&[loss("far", 3.0)]);
     let all = insulations(&only_far);
-    let (mut search, mut settled) = with_all(&only_far, &all);
+    let might = spread(&only_far);
+    let (mut search, mut settled) = with_all(&only_far, &might, &all);
     search.step_back(&mut settled).unwrap();
     assert_eq!(search.taken, [1]);
     assert_eq!((settled.effects.len(), settled.effects[0].component.as_str()), (1, "far"));
@@ -52,7 +61,8 @@ fn a_step_back_takes_out_what_is_superfluous_and_nothing_else() {
 
     let of_both = bench::experiment(&[loss("near", 3.0), loss("far", 3.0)]);
     let all = insulations(&of_both);
-    let (mut search, mut settled) = with_all(&of_both, &all);
+    let might = spread(&of_both);
+    let (mut search, mut settled) = with_all(&of_both, &might, &all);
     search.step_back(&mut settled).unwrap();
     assert_eq!((search.taken.len(), settled.effects.len()), (2, 2));
     // The first one was fitted without the second: of its value only a fit of both knows.
@@ -73,7 +83,8 @@ fn a_step_back_asks_for_the_others_again() {
     let of_near = |c: &Candidate| ["P2", "P3"].contains(&c.id) && c.component == "near";
     all.retain(|c| of_near(c) || (c.id == "P2" && c.component == "far"));
     assert_eq!(all.iter().map(|c| c.id).collect::<Vec<_>>(), ["P2", "P3", "P2"]);
-    let (mut search, mut settled) = with_all(&experiment, &all);
+    let might = spread(&experiment);
+    let (mut search, mut settled) = with_all(&experiment, &might, &all);
     search.step_back(&mut settled).unwrap();
     assert_eq!(search.taken, [2]);
     assert_eq!((settled.effects.len(), settled.effects[0].component.as_str()), (1, "far"));
@@ -83,7 +94,8 @@ fn a_step_back_asks_for_the_others_again() {
 fn what_leaves_far_more_than_another_is_refuted() {
     let experiment = bench::experiment(&[loss("far", 3.0)]);
     let all = insulations(&experiment);
-    let search = search(&experiment, &all);
+    let might = spread(&experiment);
+    let search = search(&experiment, &might, &all);
     let start = |k| Start { candidates: vec![k], at: vec![0.0], earlier: None };
     let mut tried = search.common().fits(&[start(0), start(1)], Care::Quick);
     let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
@@ -105,7 +117,8 @@ fn a_pair_is_taken_where_it_explains_more_than_one() {
     let settled = |most: f64| {
         let mut all = insulations(&experiment);
         all[0].most = most;
-        let mut search = search(&experiment, &all);
+        let might = spread(&experiment);
+        let mut search = search(&experiment, &might, &all);
         let null = fit(&experiment, &search.base, &search.likelihood, &search.slopes, Care::Quick);
         let null = search.leave_out(null.unwrap());
         let z = search.z(&null.readings);
@@ -134,7 +147,8 @@ fn a_jump_is_found_where_it_was_and_is_no_drift() {
         let experiment = bench::experiment(&[jump, moment]);
         let mut all = candidates(&experiment);
         all.retain(|c| c.id == "S3" && c.component == column);
-        let mut search = search(&experiment, &all);
+        let might = spread(&experiment);
+        let mut search = search(&experiment, &might, &all);
         let settled = search.run(&mut Stopwatch::new()).unwrap();
         let [found] = &settled.effects[..] else { panic!("{column}: {:?}", settled.effects) };
         assert_eq!((found.id, found.parameter), ("S3", "step_k"));
@@ -152,7 +166,8 @@ fn what_leaves_much_at_a_sensor_is_another_cause() {
     let mut experiment = bench::experiment(&[loss("far", 3.0)]);
     let all = insulations(&experiment);
     let of = |experiment: &Experiment| {
-        let mut search = search(experiment, &all);
+        let might = spread(experiment);
+        let mut search = search(experiment, &might, &all);
         search.run(&mut Stopwatch::new()).unwrap()
     };
     assert_eq!(of(&experiment).verdict, Verdict::Named);
@@ -169,7 +184,8 @@ fn what_leaves_much_at_a_sensor_is_another_cause() {
 fn afresh_tolerances_stand_where_they_were_before_any_fit() {
     let only_far = bench::experiment(&[loss("far", 3.0)]);
     let all = insulations(&only_far);
-    let mut search = search(&only_far, &all);
+    let might = spread(&only_far);
+    let mut search = search(&only_far, &might, &all);
     // All the way to their bounds.
     search.base.iter_mut().for_each(|u| u.start = u.mean + crate::fit::BOUND_SD * u.sd);
     let found = search.afresh(&[0, 1]);
@@ -186,7 +202,8 @@ fn afresh_tolerances_stand_where_they_were_before_any_fit() {
 fn tolerances_with_which_the_model_alone_does_not_run_are_no_start() {
     let only_far = bench::experiment(&[loss("far", 3.0)]);
     let all = insulations(&only_far);
-    let search = search(&only_far, &all);
+    let might = spread(&only_far);
+    let search = search(&only_far, &might, &all);
     let null =
         fit(&only_far, &search.base, &search.likelihood, &Slopes::new(), Care::Quick).unwrap();
     let start = Start { candidates: vec![1], at: vec![1.0], earlier: None };
