@@ -207,7 +207,7 @@ pub fn explain(
         },
     };
     let before = experiment.observed(&model, &[], &[]);
-    let spread = Spread::around(experiment, model, &[], &[]);
+    let spread = Spread::new(experiment, model, &[], &[]);
     let Uncertainties { sigma, known } = spread.seen(experiment, &[], &[]);
     watch.lap("uncertainty");
     let problems = sanity::beside(experiment, &before, &sigma);
@@ -288,7 +288,7 @@ pub fn compare(
     let uses = split(experiment, split_file)?;
     let model = experiment.simulated(&[], &[], 1)?;
     let before = experiment.observed(&model, &[], &[]);
-    let sigma = Spread::around(experiment, model, &[], &[]).seen(experiment, &[], &[]).sigma;
+    let sigma = Spread::new(experiment, model, &[], &[]).seen(experiment, &[], &[]).sigma;
     Ok(gaps(experiment, &uses, &sigma, &before, &before, &before))
 }
 

@@ -18,7 +18,6 @@
 
 use crate::catalogue::LAG_S;
 use crate::data::Track;
-use crate::error::ExplainError;
 use crate::experiment::{Experiment, Sample, Simulated};
 use crate::grid;
 use crate::sensors::{Role, Sensor};
@@ -88,21 +87,8 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// From simulations with these effects, which carry on what inputs leave open.
-    ///
-    /// # Errors
-    /// What keeps the model from running with them.
+    /// From simulations with these effects, which carry on what inputs leave open; `model` is the one of the inputs as they were read.
     pub fn new(
-        experiment: &Experiment,
-        unknowns: &[Unknown],
-        at: &[f64],
-    ) -> Result<Self, ExplainError> {
-        let model = experiment.simulated(unknowns, at, 1)?;
-        Ok(Self::around(experiment, model, unknowns, at))
-    }
-
-    /// The same where the simulation with the inputs as they were read is known.
-    pub fn around(
         experiment: &Experiment,
         model: Simulated,
         unknowns: &[Unknown],
@@ -480,7 +466,7 @@ mod tests {
     fn a_slow_sensor_keeps_what_a_moment_has_left_open() {
         use crate::bench;
         let experiment = bench::experiment(&[]);
-        let spread = Spread::new(&experiment, &[], &[]).unwrap();
+        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap(), &[], &[]);
         let slow = [Unknown::plain(Target::Lag(2), 0.0, 1.0)];
         let [fast, slow] = [0.0, 40.0].map(|lag_s| spread.seen(&experiment, &slow, &[lag_s]).sigma);
         // The front passes the middle until some 2 min after 1800 s; at 2060 s it is over, but not for a sensor of 40 s.
@@ -505,8 +491,8 @@ mod tests {
         let blur = effect_target("P7", "near", "dispersion_m2_s");
         let blur = [Unknown::plain(blur, 0.0, 1.0)];
         let [sharp, blurred] = [0.0, 1.0].map(|at| {
-            let spread = Spread::new(&experiment, &blur, &[at]).unwrap();
-            spread.seen(&experiment, &blur, &[at]).sigma
+            let model = experiment.simulated(&blur, &[at], 1).unwrap();
+            Spread::new(&experiment, model, &blur, &[at]).seen(&experiment, &blur, &[at]).sigma
         });
         // The front leaves at 1800 s, and its middle arrives after some 2 min; blurred it is there a minute earlier, and less sharp.
         let at = |time_s: f64| {
@@ -522,7 +508,7 @@ mod tests {
     fn the_noise_of_inputs_is_known() {
         use crate::bench;
         let experiment = bench::experiment(&[]);
-        let spread = Spread::new(&experiment, &[], &[]).unwrap();
+        let spread = Spread::new(&experiment, experiment.simulated(&[], &[], 1).unwrap(), &[], &[]);
         let Uncertainties { sigma, known } = spread.seen(&experiment, &[], &[]);
         assert!(known.iter().zip(&sigma).all(|(known, sigma)| known <= sigma));
         // Long before the front: the noise of the inlet arrives at the middle, blurred by steps between its readings.

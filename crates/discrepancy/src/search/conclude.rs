@@ -36,10 +36,11 @@ impl Search<'_> {
     /// or three effects show for the first time together.
     pub(super) fn doubt(&mut self, settled: &mut Settled) -> Result<(), ExplainError> {
         let (unknowns, at) = settled.chosen.as_ref().unwrap_or(&settled.null);
+        let simulated = self.experiment.simulated(unknowns, at, 1)?;
+        let readings = self.experiment.observed(&simulated, unknowns, at);
         // What inputs leave open the effects carry on.
-        let spread = Spread::new(self.experiment, unknowns, at)?;
+        let spread = Spread::new(self.experiment, simulated, unknowns, at);
         self.likelihood.predict(spread.seen(self.experiment, unknowns, at));
-        let readings = self.experiment.readings(unknowns, at)?;
         self.likelihood.rescale(self.experiment, &readings);
         if settled.chosen.is_none() {
             return Ok(());

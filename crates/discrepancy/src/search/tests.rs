@@ -16,7 +16,7 @@ fn insulations(experiment: &Experiment) -> Vec<Candidate> {
 }
 
 fn spread(experiment: &Experiment) -> Spread {
-    Spread::new(experiment, &[], &[]).unwrap()
+    Spread::new(experiment, experiment.simulated(&[], &[], 1).unwrap(), &[], &[])
 }
 
 fn search<'a>(experiment: &'a Experiment, spread: &'a Spread, all: &'a [Candidate]) -> Search<'a> {
